@@ -1,4 +1,4 @@
-//! The ensemble of a file: its members are simulated on all processors, or a share of them on this machine.
+//! The ensemble of a file: members on all processors, or a share of them.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -60,8 +60,8 @@ fn cannot(path: &Path, error: &dyn std::fmt::Display) -> ProgramFailure {
     ProgramFailure::Output(format!("{}: {error}", path.display()))
 }
 
-/// Simulates the chunks that are missing in a file's folder, and prints a report: of this share while chunks are
-/// missing. Stored rows aren't read. Returns the numbers of failed members and of missing chunks.
+/// Simulates a folder's missing chunks, and prints a report, of this share while chunks are missing. Stored rows aren't
+/// read. Returns the numbers of failed members and of missing chunks.
 fn made(
     path: &Path,
     scene: &SceneFile,

@@ -13,7 +13,7 @@ pub(crate) fn files(given: &ArgMatches) -> Vec<&PathBuf> {
     given.get_many("FILE").map(Iterator::collect).unwrap_or_default()
 }
 
-/// The files of a command that writes a result for each, named after it; their names have to differ.
+/// The files of a command with one result for each, whose names have to differ.
 pub(crate) fn different_files(given: &ArgMatches) -> Result<Vec<&PathBuf>, Failure> {
     let paths = files(given);
     for (number, path) in paths.iter().enumerate() {

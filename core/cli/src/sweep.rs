@@ -56,7 +56,7 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
     if stopped == 0 { Ok(()) } else { Err(Failure::Runs(format!("{stopped} scenes of the sweep stopped"))) }
 }
 
-/// Computes answers on several threads, and passes each to `take` in order, as soon as those before are there.
+/// Computes answers on all threads, and passes them to `take` in order, as early as possible.
 fn in_order<T: Sync, R: Send>(
     questions: &[T],
     answer: impl Fn(&T) -> R + Sync,

@@ -41,6 +41,6 @@ fn wilson(some: f64, all: f64) -> [f64; 2] {
     let (share, z) = (some / all, Z * Z / all);
     let middle = share + 0.5 * z;
     let half = (z * (share * (1.0 - share) + 0.25 * z)).sqrt();
-    // At both ends of the range the interval is exact up to rounding errors, which are clamped.
+    // At both ends of the range the interval is exact but for rounding.
     [(middle - half) / (1.0 + z), (middle + half) / (1.0 + z)].map(|end| end.clamp(0.0, 1.0))
 }

@@ -82,7 +82,7 @@ macro_rules! random {
     }};
 }
 
-/// Compares declarations by themselves.
+/// Compares single declarations.
 macro_rules! as_compiled {
     ($($name:ident { $($field:ident)* })+) => {
         $(for seed in 1..3 {
@@ -226,7 +226,7 @@ fn sums_of_what_is_read() {
     assert_same(&(body + gravity), &(late + late_gravity), 5);
 }
 
-/// Compares the continuous limit at a velocity, and the Jacobian at a step's increment.
+/// Compares continuous limits, and Jacobians at a step's increment.
 fn assert_same_terms<A, B>(one: &A, other: &B, seed: u64)
 where
     A: Effect<Scalar = f64, Retraction = CayleyRetraction>,

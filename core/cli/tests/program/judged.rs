@@ -62,7 +62,7 @@ fn springs_that_are_too_stiff() {
     assert!(refused.starts_with("several.toml:") && ring(1.02e5, "1 ms").first(1).is_err(), "{refused}");
     let run = ring(1.02e5, "0.1 ms").run().unwrap();
     assert!(run.notes().is_empty() && last(&run).energy < 1e-8, "{}", notes(&run));
-    // The rate is `√(4 k/m)` again, and the relative rate of the steps `2 asin(hω/2)/(hω)`.
+    // The rate is `√(4 k/m)` again, in steps `2 asin(hω/2)/(hω)` times that.
     let run = ring(4e4, "1 ms").run().unwrap();
     let said = notes(&run);
     assert!(said.contains("is at 1260 rad/s, and a step of 0.001 s makes it 8 % faster"), "{said}");
@@ -401,7 +401,7 @@ fn runs_without_a_step() {
     assert!(output.status.success());
 }
 
-/// Energies of small bodies are printed with their digits, and times of steps without rounding errors.
+/// Small energies are printed with digits, and times of steps without rounding.
 #[test]
 fn digits_of_a_report() {
     let text = "title = \"grain\"\n[body]\nmoments = [1e-12, 1e-12, 1e-12]\n[start]\neuler = [0, 0, 0]\n\

@@ -335,7 +335,7 @@ fn what_files_of_several_bodies_are_not_for() {
     assert!(parts.iter().all(|part| derivation.contains(part)) && !derivation.contains("without gravity"));
     let free = system(&format!("title = \"free\"\n{}[run]\nstep = 0.1\nduration = 1\n", free("a", [0.0; 3], TURNING)));
     assert!(free.derivation().contains("without gravity") && !free.derivation().contains("joints"));
-    // A file of several bodies beside a file of one.
+    // Files of several bodies and of one.
     let output = simulate(&folder, &["held.toml", "top.toml"]);
     assert!(output.status.success() && folder.join("top.csv").exists());
     assert!(fs::read_to_string(folder.join("held.svg")).unwrap().contains("Ways of the centres of mass"));

@@ -76,7 +76,7 @@ impl<'de> Deserialize<'de> for Body {
 
 struct BodyTable;
 
-/// Written by hand, so that the message about a superfluous key has that key's place.
+/// Written by hand, so that a superfluous key is refused at its place.
 impl<'de> Visitor<'de> for BodyTable {
     type Value = Body;
 

@@ -177,7 +177,7 @@ pub(crate) fn picture_stride(steps: u64) -> u64 {
 }
 
 impl Output {
-    /// The columns that the table names among the known ones, or the default columns if it names none.
+    /// The columns by their keys among the known ones, or the default.
     pub(crate) fn columns(&self, known: &[Column], default: &[&str]) -> Result<Vec<Column>, Wrong> {
         let find = |key: &str| known.iter().find(|column| column.key == key).copied();
         let Some(keys) = &self.columns else { return Ok(default.iter().filter_map(|key| find(key)).collect()) };

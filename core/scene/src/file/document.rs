@@ -62,7 +62,7 @@ const METHODS: &str = "is no method of a scene: `method` is \"step\", or a table
                        `{ splitting = \"Nyström 6-4\" }`, `{ processed = \"processed 3-6 a\" }` or `{ collocation = 8 }`; \
                        a Runge–Kutta method wouldn't keep what the motion conserves";
 
-/// The name of a method that is written as a text; none for `step`, the only method without a scheme.
+/// The name of a method without a table, other than `step`.
 fn named_method(document: &Document<'_>) -> Option<String> {
     let name = document.get_ref().get("run")?.get_ref().get("method")?.get_ref().as_str()?;
     (name != "step").then(|| name.to_owned())
@@ -164,7 +164,7 @@ fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     Some((span(document, &["run", "density"]), format!("a `density` is around {what}")))
 }
 
-/// Conflicts with a method; those of a Lagrangian of the file's own come first.
+/// Conflicts with a method; a Lagrangian's come first.
 fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     let method = &file.run.method;

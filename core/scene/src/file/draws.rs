@@ -22,8 +22,8 @@ pub struct SceneEnsemble {
     pub seed: u64,
     /// Steps from one row of a member to the next. Without it, only the columns at the end are recorded.
     pub every: Option<u64>,
-    /// Number of members that are simulated together and stored in one file. It bounds the members that are lost when a
-    /// run is interrupted.
+    /// Number of members that are simulated together and stored in one file, and at most lost when a run is
+    /// interrupted.
     pub chunk: Option<u64>,
     /// The text of the whole file, which identifies the ensemble.
     pub text: String,
@@ -166,7 +166,7 @@ pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -
     if ensemble.axes.is_empty() {
         return Err((table.span(), format!("`ensemble` draws nothing; {PARTS}")));
     }
-    // The reader's tables are sorted by their keys: the file's order is restored.
+    // Tables are sorted by keys: the file's order is restored.
     ensemble.axes.sort_by_key(|axis| axis.span.start);
     Ok(ensemble)
 }

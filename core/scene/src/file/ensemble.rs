@@ -130,7 +130,7 @@ pub(crate) fn read(
             here = inner.and_then(|value| value.get_ref().as_table());
         }
     }
-    // The tables of a clone of the scene borrow this text, so it is parsed once and leaked.
+    // The tables borrow the text, so it is parsed once and leaked.
     let tables = DeTable::parse(Box::leak(text.into())).map_err(|error| Mistake::of_toml(path, text, &error))?;
     let axes = &ensemble.axes;
     let is_drawn = |name: &str| axes.iter().any(|axis| axis.keys.first().is_some_and(|key| key.get_ref() == name));
@@ -139,7 +139,7 @@ pub(crate) fn read(
     let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
     ensemble.tables = tables.into_inner().into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
     ensemble.like = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));
-    // Wrong units and keys are found by reading two members at the ends of the distributions.
+    // Wrong units and keys are found by reading two members.
     for end in [true, false] {
         let value = |(_, spread)| match spread {
             Spread::Uniform { from: value, .. } if end => value,

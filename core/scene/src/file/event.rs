@@ -73,7 +73,7 @@ impl TryFrom<EventTable> for Event {
             return Err("an event has one of `tilt`, `speed`, `energy`, `velocity_1`, `velocity_2`, `velocity_3`, \
                         `axis_1`, `axis_2`, `axis_3`");
         };
-        // The name of an event is used as the name of a column.
+        // An event's name is the name of a column.
         let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);
         if table.name.is_empty() || !table.name.chars().all(is_plain) {
             return Err("the `name` of an event has letters, digits, - and _ only");

@@ -44,7 +44,7 @@ impl Declared {
         Late::of(self.declaration)?.with_all(&self.numbers)
     }
 
-    /// The effect of a Lagrangian with a pace, which also advects the energy of its motion.
+    /// The effect with a pace, which advects its energy, too.
     pub(crate) fn paced(&self) -> Result<Late<SO3, SeenWithEnergy, WithEitherKinetic, Backend>, LateError> {
         Late::of(self.declaration)?.with_all(&self.numbers)
     }
@@ -73,7 +73,7 @@ struct Parameter {
     numbers: Vec<f64>,
 }
 
-/// Deserialises nothing, as [`take`] has removed the table before. The key exists for messages that list all keys.
+/// Deserialises nothing, as [`take`] removes the table first. Messages that list all keys need the key.
 #[allow(clippy::unnecessary_wraps)] // serde requires a `Result`
 pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Option<Declared>, D::Error> {
     Ok(None)
@@ -167,7 +167,7 @@ fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declare
     fits.map_err(wrong).map(|()| declared)
 }
 
-/// The declaration's argument `advected(w = up), `, empty without advected vectors.
+/// The argument `advected(w = up), `, empty without advected vectors.
 fn advected(table: &DeTable<'_>) -> Result<String, Wrong> {
     let Some(value) = table.get("advected") else { return Ok(String::new()) };
     let all = BTreeMap::<String, Spanned<String>>::deserialize(ValueDeserializer::from(value.clone()))

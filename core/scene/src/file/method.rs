@@ -13,7 +13,7 @@ pub(crate) enum Method {
     Composition(Named<CompositionScheme>),
     /// A splitting with the exact motion of the free body.
     Splitting(Named<SplittingScheme>),
-    /// A splitting with the exact motion of the free body, between a processor and its inverse.
+    /// A splitting with the exact motion of the free body, with a processor.
     Processed(Named<ProcessedScheme>),
     /// A collocation, by its number of stages.
     Collocation(Stages),

@@ -87,8 +87,7 @@ impl Mistake {
     }
 }
 
-/// Words of other programs, each with the name that has its meaning here, and advice. Advice is given where the name is
-/// expected.
+/// Words of other programs, each with the name that it stands for here, and advice for where that name is expected.
 const OTHER_WORDS: [(&str, &str, &str); 15] = [
     ("hinge", "pin", "a hinge is a `pin`"),
     ("revolute", "pin", "a revolute joint is a `pin`"),

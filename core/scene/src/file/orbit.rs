@@ -37,7 +37,7 @@ struct OrbitTable {
     normal: Direction,
     eccentricity: Option<Scalar<Number>>,
     phase: Option<Scalar<Angle>>,
-    /// Direction of pericentre; only its part across the normal counts.
+    /// Direction of pericentre, projected across the normal.
     periapsis: Option<Direction>,
 }
 
@@ -68,7 +68,7 @@ impl Orbit {
         Ok((clock, self.period / f64::from(steps.get())))
     }
 
-    /// The orbit's keys and values, rounded to the digits that a person would write.
+    /// The orbit's keys and values, rounded for display.
     pub(crate) fn said(&self) -> [(&'static str, String); 5] {
         let [near, on] = &self.axes;
         // A zero without its rounding error and its sign.

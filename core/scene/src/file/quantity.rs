@@ -98,7 +98,7 @@ pub(crate) struct Triple<Q> {
     quantity: PhantomData<Q>,
 }
 
-/// A unit vector. A file's numbers may deviate by the digits that were left out, and are normalised.
+/// A unit vector, normalised from typed digits.
 #[derive(Clone, Copy)]
 pub(crate) struct Direction(pub(crate) Vector3<f64>);
 

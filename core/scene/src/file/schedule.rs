@@ -27,7 +27,7 @@ pub(crate) struct Schedule {
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Density {
-    /// Steps in which the body turns by about equal angles. This angular velocity bounds the length of a step.
+    /// Steps of about equal turns; this angular velocity bounds their length.
     Turn(Positive<Rate>),
 }
 

@@ -56,7 +56,7 @@ impl<'de> Deserialize<'de> for Start {
 
 struct StartTable;
 
-/// Written by hand, so that the message about a key that conflicts with another has its place.
+/// Written by hand, so that conflicting keys are refused at their place.
 impl<'de> Visitor<'de> for StartTable {
     type Value = Start;
 

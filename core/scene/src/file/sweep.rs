@@ -117,7 +117,7 @@ fn spread(range: &DeTable<'_>, span: &Range<usize>) -> Result<Vec<String>, Wrong
     Ok((0..count).map(text).collect())
 }
 
-/// A value as written in the file. Lists are separated by spaces, as commas separate columns.
+/// A value as written. Lists are separated by spaces, as commas separate columns.
 fn shown(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => {

@@ -94,7 +94,7 @@ pub(crate) fn ends_and_axes(joint: &Joint) -> ([Vector3<f64>; 2], Option<[Vector
     }
 }
 
-/// A spring between two points, each relative to its body's centre of mass.
+/// A spring between two points, from their centres of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spring {
     pub(crate) k: f64,
@@ -348,7 +348,7 @@ fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>), Wrong
     Ok((body, place))
 }
 
-/// The name that stands for space in place of a body.
+/// The name of space among bodies.
 const SPACE: &str = "space";
 
 /// The numbers of two named bodies.

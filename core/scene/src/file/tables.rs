@@ -25,7 +25,7 @@ pub(crate) fn span(document: &Document<'_>, keys: &[&str]) -> Range<usize> {
 /// The keys that lead to a value.
 pub(crate) type Keys = Vec<Spanned<String>>;
 
-/// The values of nested tables: a table for which `leads_on` holds is descended into, any other value is an end.
+/// The values of nested tables; a table ends the nesting unless `leads_on`.
 pub(crate) fn ends<'t, 'a>(
     table: &'t DeTable<'a>,
     leads_on: &dyn Fn(&DeTable<'a>) -> bool,

@@ -84,7 +84,7 @@ impl System {
         Stepper::jointed(parts, self.arrangement.joints(&self.joints), self.step)
     }
 
-    /// Initial configurations and velocities of the file's bodies.
+    /// The file's initial configurations and velocities.
     fn given(&self) -> Vec<Moving> {
         let of = |body: &SystemBody| {
             let (turn, shift) = (body.start.velocity, body.moving);

@@ -39,8 +39,7 @@ pub type LeastWhole = Whole<WithKinetic, V>;
 /// The stepper of a member in lanes, and its initial state.
 pub type MemberInLanes<K, W> = (Stepper<Whole<K, W>>, StateOf<Whole<K, W>>);
 
-/// The term with the kinetic energy: a Lagrangian of the file's own, or the declaration of a library body; with the
-/// numbers of its parameters.
+/// The kinetic term: a Lagrangian of the file's own, or a library body by its text; with its parameters.
 #[derive(Clone)]
 struct Moving {
     own: Option<&'static Declaration>,
@@ -72,8 +71,7 @@ impl Moving {
     }
 }
 
-/// The program of this body, if any, and of the file's effects and force; `None` without a term. Each sum is derived
-/// once per process.
+/// The program of this body, if any, and of the file's effects and force. Each sum is derived once per process.
 fn program<K: KineticPart, W: Advected<SO3> + Slots>(
     file: &SceneFile,
     J: &Inertia,
@@ -88,8 +86,8 @@ fn program<K: KineticPart, W: Advected<SO3> + Slots>(
     Late::of(Declaration::sum(&terms)?)?.with_all(&numbers(file, J, body, 0.0)).map(Some)
 }
 
-/// The program of a scene with steps of its own kind, for members of an ensemble in lanes. `None` for another method,
-/// for steps of varying length, for effects along orbits, and for terms that need another `K` or `W`.
+/// The program of a scene for members of an ensemble in lanes. `None` for another method, for varying steps, for
+/// effects along orbits, and for terms that need another `K` or `W`.
 pub(crate) fn whole<K: KineticPart, W: Advected<SO3> + Slots>(file: &SceneFile) -> Option<Whole<K, W>> {
     let is_of_one_kind = matches!(file.run.method, Method::Step) && !file.has_steps_of_its_own();
     let J = inertia(file).ok().filter(|_| is_of_one_kind && file.turning().next().is_none())?;
@@ -113,7 +111,7 @@ where
     Ok((stepper, state))
 }
 
-/// The body's inertia. A Lagrangian has no effects that need it, so that any value serves.
+/// The inertia. A Lagrangian has no effects that need it.
 fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
     match file.body {
         Some(body) => Ok(body.J),
@@ -121,7 +119,7 @@ fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
     }
 }
 
-/// The parameters of all terms at a time, in the program's order.
+/// The parameters of all terms at a time, in order.
 fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Moving>, time: f64) -> Vec<f64> {
     let own = file.force.iter().flat_map(|own| own.numbers.iter().copied());
     let body = body.iter().flat_map(|body| body.numbers.iter().copied());
@@ -159,9 +157,8 @@ impl<A: Advected<SO3> + 'static> SceneStepper for AnyStepper<SO3, A> {
     }
 }
 
-/// Simulates the sum of a body and its effects. A body with the kinetic term (3.13) has a compiled step, and its
-/// effects are one program. Everything is one program for other kinetic terms, for a Lagrangian of the file's own, and
-/// where an effect enters the equation of the step.
+/// Simulates a body and its effects. A body of (3.13) has a compiled step, and its effects are one program. All is one
+/// program for other kinetic terms, for a Lagrangian of the file's own, and where an effect enters the step's equation.
 ///
 /// Effects are summed before they are added to a compiled body.
 pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
@@ -248,7 +245,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
     match (file.run.method, file.body.ok_or_else(nothing)?.mass) {
         (Method::Step, Distribution::Principal(J_d)) => {
             let body = PrincipalBody { J_d };
-            // The smallest type that fits the effects and the advected vectors makes the fastest steps.
+            // The smallest type that fits makes the fastest steps.
             if let Ok(kicks) = program::<OnlyKicks, ()>(file, &J, None) {
                 kicks.map_or_else(|| any!(Stepper::new(body, h)), |kicks| any!(Stepper::new(body + kicks, h)))
             } else if let Ok(Some(kicks)) = program::<OnlyKicks, V>(file, &J, None) {
@@ -267,7 +264,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
     }
 }
 
-/// The error for a missing body, which a file that was read can't cause.
+/// A missing body: impossible in a file that was read.
 fn nothing() -> Stop {
     Stop::Other("there is no body".to_owned())
 }

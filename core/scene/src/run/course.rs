@@ -73,8 +73,7 @@ fn kind(direction: Direction) -> recording::Event {
     }
 }
 
-/// The function that rises through zero where the quantity rises through its value. A tilt is the angle of `axis`, body
-/// frame, to the vertical.
+/// The function that rises through zero with the quantity through its value. A tilt is that of `axis`, body frame.
 fn function<I: Integrator<Group = SO3>>(
     quantity: Quantity,
     axis: Vector3<f64>,

@@ -18,7 +18,7 @@ impl SceneFile {
     }
 
     /// The time and the scene's columns at the end of a run; the greatest deviations of energy and angular momentum in
-    /// space from their start; and for each event its count and the time of the first, s, NaN if it never happens.
+    /// space from their start; each event's count, and the time of its first, s, or NaN.
     ///
     /// The greatest deviations are those of the [samples](Run::samples), which are all steps of a run of up to 20 000;
     /// NaN where a sample has no value.

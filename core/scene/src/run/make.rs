@@ -44,7 +44,7 @@ pub struct Happening {
     pub sample: Sample,
 }
 
-/// Most events of a run. A quantity that passes its value more often is no event.
+/// Most events of a run.
 const MOST_HAPPENINGS: usize = 1_000_000;
 
 /// The reason why a run couldn't be started or finished.
@@ -117,7 +117,7 @@ pub(crate) struct Listeners<'a> {
 /// The length and the table of a run, as prescribed by the file.
 pub(crate) struct Course<'a> {
     pub(crate) steps: u64,
-    /// End of the run, s; it counts where the steps' lengths vary.
+    /// End of the run, s, for varying steps.
     pub(crate) end: f64,
     /// Steps from row to row.
     pub(crate) stride: u64,
@@ -229,7 +229,7 @@ impl<'a, I: Integrator<Group: LieGroup<Scalar: Into<f64>>>> TableRecorder<'a, I>
         self.recorder.record(now)
     }
 
-    /// Adds the end of the run as the last row, and finishes the table.
+    /// Adds the last row, and finishes the table.
     fn finish(mut self, end: &Moment<'_, I>, sample: Sample) -> Result<(), RecordError> {
         let is_written = self.ends.as_ref().is_some_and(|(_, last)| last.time >= sample.time);
         let recorded = if is_written { Ok(()) } else { self.record(end, sample) };

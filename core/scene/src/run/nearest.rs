@@ -12,9 +12,9 @@ use crate::run::stiffness::eigen;
 pub(crate) type Moving = ((SO3, R3), Vector6<f64>);
 
 impl System {
-    /// The bodies with the least shifts, weighted by their masses, with which the points of joints meet, and with the
-    /// nearest velocities for which they stay together. Attitudes and angular velocities are unchanged. Where joints
-    /// form loops, points may stay apart; then their distances are least.
+    /// The bodies with the least mass-weighted shifts that close the joints, and with the nearest velocities that keep
+    /// them closed. Attitudes and angular velocities are unchanged. Joints in loops may stay open, by as little as
+    /// possible.
     ///
     /// Both problems are linear at fixed attitudes: with `b` the gaps `R_a ρ_a − R_b ρ_b − (x_b − x_a)` and `A` the
     /// differences `x_b − x_a`, the shifts are `M⁻¹ Aᵀ (A M⁻¹ Aᵀ)⁺ b`.

@@ -92,9 +92,9 @@ impl SceneFile {
         choose::stepper(self).map_err(|stop| self.mistake(stop))
     }
 
-    /// The scene as one program, for members of its ensemble in lanes. `None` for another method, for steps of varying
-    /// length, for effects along orbits, and for terms that need another `K` or `W`: try
-    /// [`LeastWhole`](crate::LeastWhole) first.
+    /// The scene as one program, for members of its ensemble in lanes. `None` for another method, for varying steps,
+    /// for effects along orbits, and for terms that need another `K` or `W`: try [`LeastWhole`](crate::LeastWhole)
+    /// first.
     #[must_use]
     pub fn whole<K: KineticPart, W: Advected<SO3> + Slots>(&self) -> Option<Whole<K, W>> {
         choose::whole(self)

@@ -13,7 +13,7 @@ use crate::run::make::{Listeners, Run, Stop};
 
 /// Difference of attitudes, rad, beyond which two runs are different motions.
 const ANOTHER: f64 = 1.0;
-/// Difference of velocities, relative to the largest one, beyond which two runs are different motions.
+/// Difference of velocities, relative to the largest, beyond which two runs are different motions.
 const SHARE: f64 = 0.5;
 
 /// Differences of two states, the largest among all bodies: rad, rad/s, m and m/s.
@@ -37,8 +37,7 @@ impl Apart {
     }
 }
 
-/// The largest angular and linear velocities of a run, rad/s and m/s, and the largest distance of a body from its
-/// start, m.
+/// The largest angular and linear velocities, rad/s and m/s, and the largest distance of a body from its start, m.
 fn largest(run: &Run) -> [f64; 3] {
     let Some(first) = run.samples().first() else { return [0.0; 3] };
     let mut most = [0.0_f64; 3];

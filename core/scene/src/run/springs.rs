@@ -34,7 +34,7 @@ impl<const N: usize> Springs<N> {
         for between in self.all() {
             let along = between.along(places);
             let (Spring { k, length, at }, size) = (&between.of, along.norm());
-            // A spring without a length has no direction.
+            // A spring whose ends coincide has no direction.
             let tension = if size > 0.0 { along * (k * (1.0 - length / size) * half_step) } else { along };
             for (side, sign) in [(0, 1.0), (1, -1.0)] {
                 let Some(body) = between.bodies[side] else { continue };

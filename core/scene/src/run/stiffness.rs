@@ -1,5 +1,4 @@
-//! The stability limit of springs: half a kick, a drift and half a kick are unstable beyond `hω = 2` of the fastest
-//! vibration.
+//! The stability limit of springs: kicks at the ends of a step are unstable beyond `hω = 2` of the fastest vibration.
 
 use liestep::SO3;
 use liestep::groups::R3;
@@ -39,8 +38,7 @@ pub(crate) fn unstable(rate: f64, step: f64) -> String {
     )
 }
 
-/// The note about a step that is long for a vibration, if it is: for its rate at the start, `now`, or for an upper
-/// bound, `most`, both rad/s.
+/// A note about a step that is long for a vibration with the rate `now`, or with an upper bound `most`, rad/s.
 pub(crate) fn coarse(now: f64, most: f64, step: f64) -> Option<String> {
     let good = round(0.2 / now.max(most));
     if step * now > COARSE {
@@ -102,8 +100,8 @@ impl System {
         Ok(coarse(now, most, self.step).map(|why| (number, why)))
     }
 
-    /// The spring with the largest part in the fastest vibration, and its rate, rad/s. The springs have their present
-    /// directions, or with `in_any` the full stiffness in every direction.
+    /// The spring with the largest part in the fastest vibration, and its rate, rad/s: in the springs' present
+    /// directions, or `in_any`.
     fn fastest(&self, places: &[(SO3, R3)], free: Option<&DMatrix<f64>>, in_any: bool) -> Option<(usize, f64)> {
         let mut all = DMatrix::zeros(3 * self.springs.len(), 6 * self.bodies.len());
         for (number, spring) in self.springs.iter().enumerate() {

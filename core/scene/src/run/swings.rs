@@ -11,8 +11,8 @@ use crate::file::schedule::Pace;
 use crate::run::make::{Note, Stop};
 use crate::run::stiffness::{NO_DIRECTION, UNSTABLE, coarse, has_no_direction, inverse_root, unstable};
 
-/// The rates of small oscillations about a minimum of a potential with these second derivatives by a turn of the body,
-/// in ascending order, rad/s; none where they overflow.
+/// Rates of small oscillations about a minimum with these second derivatives by a turn of the body, ascending, rad/s;
+/// none where they overflow.
 fn rates(J: &Inertia, second: Matrix3<f64>) -> Option<[f64; 3]> {
     let root = inverse_root(J);
     let matrix = root * second * root;
@@ -56,7 +56,7 @@ impl SceneFile {
 
     /// The largest rates of the swings by each potential other than the spring's, rad/s.
     fn swings(&self, J: &Inertia) -> Vec<(&'static str, f64)> {
-        // A potential `c·w`, with `w` fixed in space, has at its minimum the second derivative `|c||w|` about all axes
+        // A potential `c·w`, `w` fixed in space, has at its minimum the second derivative `|c||w|` about all axes
         // across `c`.
         let pulled = |c: Vector3<f64>, w: Vector3<f64>| {
             let axis = c.normalize();
@@ -102,8 +102,8 @@ impl SceneFile {
         let Some(step) = self.kicked_by() else { return Ok(None) };
         let turn = -arm.cross_matrix();
         let direction = along / apart;
-        // Second derivatives by a turn of the body: along the spring, across it, and from the change of the arm's
-        // direction.
+        // Second derivatives by a turn of the body: along the spring, across it, and by the second-order shift of
+        // the arm's end.
         let projector = direction * direction.transpose();
         let stiffness = projector + (Matrix3::identity() - projector) * (1.0 - length / apart);
         let tilt = direction * arm.transpose();

@@ -38,7 +38,7 @@ impl Size {
 /// The quantity that violates a constraint, for messages.
 const GAP: &str = "lengths in m and cosines of axes together";
 
-/// The sample of the first bodies of a system at this moment; the others are padding.
+/// The sample of the first bodies; the others are padding.
 fn sample<const N: usize, const L: usize>(
     stepper: &SystemStepper<N, L>,
     bodies: usize,
@@ -71,7 +71,7 @@ impl System {
         self.run_with(&mut |_| (), None)
     }
 
-    /// Simulates the system, with its progress and a table, see [`SceneFile::run_with`](crate::SceneFile::run_with).
+    /// Simulates the system, see [`SceneFile::run_with`](crate::SceneFile::run_with).
     ///
     /// # Errors
     ///

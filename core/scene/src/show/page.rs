@@ -49,8 +49,7 @@ impl Chart {
     }
 }
 
-/// The displayed shape of a body, in units of the sphere's radius: a box, or a drum for a symmetric body, with
-/// proportional moments of inertia.
+/// The displayed shape of a body, in units of the sphere's radius: a box, or a drum for a symmetric body.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure {
     /// Half edges, body frame.
