@@ -159,8 +159,8 @@ impl Turning<Direction, OnOrbit> {
 }
 
 impl Turning<Triple<Rate>, OnOrbit> {
-    /// The angular velocity at a time, s, in space, rad/s. Along an orbit it is that of the direction of the mass, `n
-    /// √(1 − e²) (a/r)²` by Kepler's second law.
+    /// The angular velocity at a time, s, in space, rad/s. Along an orbit it is that of the direction of the mass,
+    /// `n √(1 − e²) (a/r)²` by Kepler's second law.
     pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
         match self {
             Self::Fixed(rate) => rate.value,

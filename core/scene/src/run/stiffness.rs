@@ -101,7 +101,7 @@ impl System {
     }
 
     /// The spring with the largest part in the fastest vibration, and its rate, rad/s: in the springs' present
-    /// directions, or `in_any`.
+    /// directions, or with `in_any` in any direction.
     fn fastest(&self, places: &[(SO3, R3)], free: Option<&DMatrix<f64>>, in_any: bool) -> Option<(usize, f64)> {
         let mut all = DMatrix::zeros(3 * self.springs.len(), 6 * self.bodies.len());
         for (number, spring) in self.springs.iter().enumerate() {
