@@ -102,7 +102,7 @@ fn files(help: &'static str) -> Arg {
 }
 
 fn out() -> Arg {
-    // A folder has a name.
+    // An empty path is no folder.
     let named = PathBufValueParser::new()
         .try_map(|folder: PathBuf| if folder.as_os_str().is_empty() { Err("a folder has a name") } else { Ok(folder) });
     let out = Arg::new("out").long("out").value_name("DIR").help("The folder for the results").default_value("out");

@@ -1,4 +1,4 @@
-//! The members of a file's ensemble, on all processors or a share of them here.
+//! The ensemble of a file: members on all processors, or a share of them.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -16,7 +16,7 @@ use crate::files::{different_files, folder, name, scenes};
 use crate::output::{Progress, print};
 use crate::tally::{counts, of_event};
 
-/// Makes what is missing of the members, or only tells of those that are there.
+/// Simulates the members that are missing, or with `only_tells` reports the finished ones.
 pub(crate) fn ensemble(given: &ArgMatches, only_tells: bool) -> Result<(), ProgramFailure> {
     let paths = different_files(given)?;
     let scenes = scenes(&paths)?;
@@ -26,7 +26,7 @@ pub(crate) fn ensemble(given: &ArgMatches, only_tells: bool) -> Result<(), Progr
         let share = given.get_one::<(u64, u64)>("shard").copied();
         (given.get_one::<usize>("threads").copied().unwrap_or_default(), share.unwrap_or((0, 1)))
     };
-    // One that is stopped before it begins makes nothing.
+    // A run that is stopped from the start simulates nothing.
     let stop = AtomicBool::new(only_tells);
     if let Some((path, _)) = paths.iter().zip(&scenes).find(|(_, scene)| scene.ensemble().is_none()) {
         return Err(Mistake::no_table(path, "ensemble").into());
@@ -60,8 +60,8 @@ fn cannot(path: &Path, error: &dyn std::fmt::Display) -> ProgramFailure {
     ProgramFailure::Output(format!("{}: {error}", path.display()))
 }
 
-/// Makes what is missing in the folder of a file's chunks, and prints what is there then: while chunks are missing, of this
-/// share. No rows are read. The numbers of members that broke down and of missing chunks.
+/// Simulates a folder's missing chunks, and prints a report, of this share while chunks are missing. Stored rows aren't
+/// read. Returns the numbers of failed members and of missing chunks.
 fn made(
     path: &Path,
     scene: &SceneFile,
@@ -81,7 +81,8 @@ fn made(
                 let make = move |member: &Member<'_>| {
                     drawn_of(&own, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed)
                 };
-                // Whole lanes: a 64th of all, but a second's work, or of very many a 4096th, and a million rows at most.
+                // Chunks are whole lanes: a 64th of the members, at most a second's work but at least a 4096th of the
+                // members, and at most a million rows.
                 let rows = drawn.every.map_or(1, |every| steps / every + 2);
                 let share = drawn.members.div_ceil(64).min((1 << 24) / steps.max(1)).max(drawn.members >> 12);
                 let chunk = share.min((1 << 20) / rows).next_multiple_of(8).max(8);
@@ -97,7 +98,7 @@ fn made(
     finished(path, scene, drawn, Ensemble::one_by_one(&drawn.text, drawn.members, steps, make), local, store)
 }
 
-/// Makes the chunks of members that go in lanes or take turns, and prints what has become of them.
+/// Simulates the chunks of members, in lanes or one by one, and prints their outcome.
 fn finished<M: Integrator<Group = SO3> + 'static>(
     path: &Path,
     scene: &SceneFile,
@@ -130,7 +131,7 @@ fn finished<M: Integrator<Group = SO3> + 'static>(
     Ok([report.outcome.stopped, report.missing])
 }
 
-/// What is run: the file as a whole tells it from others.
+/// The plan of an ensemble. The file's text identifies it.
 fn plan<M: Integrator<Group = SO3> + 'static>(
     scene: &SceneFile,
     drawn: &SceneEnsemble,
@@ -158,7 +159,7 @@ fn plan<M: Integrator<Group = SO3> + 'static>(
             row.iter_mut().zip(&draws).for_each(|(place, (name, spread))| *place = number(&member, name, *spread));
         }
     });
-    // A quaternion and its opposite are one attitude, and which of them a member ends with means nothing.
+    // A quaternion and its opposite are the same attitude, so means of them have no meaning.
     for (column, place, name) in columns(scene).filter(|(column, ..)| column.key() != "quaternion") {
         plan = plan.reduce(name, Reduction::Moments, move |run| {
             let numbers = SceneFile::numbers(&[column], &Moment::of_step(run.stepper, run.state));
@@ -170,7 +171,7 @@ fn plan<M: Integrator<Group = SO3> + 'static>(
         .fold(plan.keep(["t"], |run| [run.stepper.time(run.state)]), |plan, event| plan.section(section(scene, event)))
 }
 
-/// A number that a member draws.
+/// The number that a member draws.
 fn number(member: &Member<'_>, name: &str, spread: Spread) -> f64 {
     match spread {
         Spread::Uniform { from, to } => member.uniform(name, from..to),
@@ -178,7 +179,7 @@ fn number(member: &Member<'_>, name: &str, spread: Spread) -> f64 {
     }
 }
 
-/// Where an event happens: its times, and the scene's columns then.
+/// The section of an event: its times, and the scene's columns then.
 fn section<M: Integrator<Group = SO3> + 'static>(
     scene: &SceneFile,
     (name, event, function, stops): MemberEvent<M>,
@@ -193,7 +194,7 @@ fn section<M: Integrator<Group = SO3> + 'static>(
     })
 }
 
-/// Each number of the scene's columns: its column, its place there and its name.
+/// The numbers of the scene's columns: each with its column, its place there and its name.
 fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &'static str)> + '_ {
     let numbers = |column: Column| column.names().iter().enumerate().map(move |(place, name)| (column, place, *name));
     scene.columns().iter().copied().flat_map(numbers)

@@ -1,4 +1,4 @@
-//! What went wrong, and how the program ends then.
+//! Failures of the program, and its exit codes.
 
 use std::fmt;
 use std::process::ExitCode;
@@ -6,13 +6,13 @@ use std::process::ExitCode;
 use liestep_plot::output::CannotWrite;
 use liestep_scene::{Kind, Mistake};
 
-/// Why there is no answer: one exit code each, as `liestep --help` lists them.
+/// The reason for a failure. Each has an exit code, as `liestep --help` lists them.
 pub(crate) enum Failure {
-    /// 1 where a file is wrong, 3 where its run stopped, 4 where its table can't be written.
+    /// 1 for a wrong file, 3 for a run that stopped, 4 for a table that can't be written.
     Scene(Mistake),
-    /// 2, as for all that is wrong with a command line.
+    /// 2, like any mistake in a command line.
     Command(String),
-    /// 3: of several runs these stopped.
+    /// 3: some of several runs stopped.
     Runs(String),
     /// 4.
     Output(String),

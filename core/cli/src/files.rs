@@ -1,4 +1,4 @@
-//! The files of a command, and what is written for them.
+//! The files of a command, and the names of its results.
 
 use std::path::{Path, PathBuf};
 
@@ -8,12 +8,12 @@ use liestep_scene::SceneFile;
 
 use crate::failure::Failure;
 
-/// The files that a command is given.
+/// The files in a command line.
 pub(crate) fn files(given: &ArgMatches) -> Vec<&PathBuf> {
     given.get_many("FILE").map(Iterator::collect).unwrap_or_default()
 }
 
-/// The files of a command that writes one for each, by its name.
+/// The files of a command with one result for each, whose names have to differ.
 pub(crate) fn different_files(given: &ArgMatches) -> Result<Vec<&PathBuf>, Failure> {
     let paths = files(given);
     for (number, path) in paths.iter().enumerate() {
@@ -30,12 +30,12 @@ pub(crate) fn folder(given: &ArgMatches) -> Result<Output, Failure> {
     Ok(Output::new(folder)?)
 }
 
-/// Reads all files, so a mistake in the last doesn't come after minutes.
+/// Reads all files first, so that a mistake in the last is reported at once.
 pub(crate) fn scenes(paths: &[&PathBuf]) -> Result<Vec<SceneFile>, Failure> {
     paths.iter().map(|path| liestep_scene::read(path).map_err(Failure::from)).collect()
 }
 
-/// The file's name with another ending.
+/// The file's name with another extension.
 pub(crate) fn name(path: &Path, extension: &str) -> String {
     let stem = path.file_stem().unwrap_or(path.as_os_str());
     format!("{}.{extension}", stem.to_string_lossy())

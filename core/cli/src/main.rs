@@ -5,7 +5,7 @@
 //! liestep run examples/scenes/sleeping-top.toml
 //! ```
 //!
-//! `liestep help` lists the commands. Its exit codes are those of [`Failure`].
+//! `liestep help` lists the commands. [`Failure`] lists the exit codes.
 
 mod command;
 mod ensemble;
@@ -30,7 +30,7 @@ use files::{different_files, files, folder, name};
 use output::{Progress, print};
 
 fn main() -> ExitCode {
-    // A wrong command line ends here, with its message and the code 2.
+    // A wrong command line ends the program here, with a message and the code 2.
     let matches = command::command().get_matches();
     match answer(&matches) {
         Ok(()) => ExitCode::SUCCESS,
@@ -55,7 +55,7 @@ fn answer(matches: &ArgMatches) -> Result<(), Failure> {
     }
 }
 
-/// What a stream of Arrow IPC is called; `.arrow` is a file of it, which readers open in another way.
+/// Extension of a stream of Arrow IPC. Readers expect the file format, another one, in `.arrow`.
 const ARROW_STREAM: &str = "arrows";
 
 fn run(given: &ArgMatches) -> Result<(), Failure> {
@@ -115,7 +115,7 @@ fn notes(run: &Run) {
     run.notes().iter().for_each(|note| eprintln!("note: {}", visible(&note.to_string())));
 }
 
-/// The endings of the tables that are asked for.
+/// The extensions of the requested tables.
 fn tables(given: &ArgMatches) -> impl Iterator<Item = &'static str> {
     let kinds = ["csv", "arrow"].into_iter().filter(|table| given.get_flag(table));
     kinds.map(|kind| if kind == "arrow" { ARROW_STREAM } else { kind })
@@ -125,7 +125,7 @@ fn tables_have_grown(given: &ArgMatches, path: &Path, output: &mut Output) -> Re
     Ok(tables(given).try_for_each(|table| output.grown(&name(path, table)))?)
 }
 
-/// The run, with its tables as they grow.
+/// The run; its tables are written while it grows.
 fn simulate(
     given: &ArgMatches,
     path: &Path,
@@ -143,7 +143,7 @@ fn simulate(
     run(&mut show, has_tables.then_some(&mut tables as &mut dyn Sink))
 }
 
-/// Several tables of one run.
+/// A sink that writes several tables of one run.
 struct Tables(Vec<Box<dyn Sink>>);
 
 impl Sink for Tables {
@@ -156,12 +156,12 @@ impl Sink for Tables {
     }
 
     fn end(&mut self) -> Result<(), SinkError> {
-        // All of them, also behind one that can't.
+        // Every table is ended, even after one that fails.
         self.0.iter_mut().map(|table| table.end()).fold(Ok(()), Result::and)
     }
 }
 
-/// All files, whatever is wrong with one.
+/// Checks all files, and reports the mistakes of each.
 fn check(given: &ArgMatches) -> Result<(), Failure> {
     let mut wrong: Option<Failure> = None;
     for path in files(given) {
@@ -177,7 +177,7 @@ fn check(given: &ArgMatches) -> Result<(), Failure> {
     wrong.map_or(Ok(()), Err)
 }
 
-/// What a file has, of which every scene makes its first step.
+/// A description of a file, after the first step of each of its scenes.
 fn checked(path: &Path) -> Result<String, Failure> {
     let scene = match Scene::read(path)? {
         Scene::Body(scene) => scene,
@@ -188,7 +188,7 @@ fn checked(path: &Path) -> Result<String, Failure> {
             return Ok(format!("{}\n{changes}", system.about()));
         }
     };
-    // A search for an accuracy takes as long as a run, and begins with the first step.
+    // The trial runs for an accuracy take as long as a run, so they are left out.
     if !scene.asks_for_accuracy() {
         notes(&scene.first(1)?);
         for (_, point) in scene.sweep().map(|sweep| sweep.points.as_slice()).unwrap_or_default() {

@@ -1,4 +1,4 @@
-//! What is printed, and how far a run is.
+//! Printing, and the display of a run's progress.
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal as _, Write as _};
@@ -9,9 +9,9 @@ use liestep_scene::visible;
 
 use crate::failure::Failure;
 
-/// Somebody who waits at a terminal sees how far a run is, and nothing is left of it when this is gone.
+/// The progress of a run, displayed on a terminal and erased at the end.
 pub(crate) struct Progress {
-    /// Where there is a terminal.
+    /// The start of the run; none without a terminal.
     start: Option<Instant>,
     is_shown: bool,
 }
@@ -22,11 +22,11 @@ impl Progress {
     }
 
     pub(crate) fn show(&mut self, progress: &dyn Display) {
-        /// What takes less needs no patience.
+        /// Time before the progress is displayed.
         const PATIENCE: Duration = Duration::from_millis(300);
         if self.start.is_some_and(|start| start.elapsed() > PATIENCE) {
             self.is_shown = true;
-            // Nobody reads it where it can't be written.
+            // An unwritable terminal has no reader.
             let _ = write!(io::stderr(), "\r{progress}\x1b[K");
         }
     }
@@ -40,7 +40,8 @@ impl Drop for Progress {
     }
 }
 
-/// Prints a report with its control characters written out. A reader that has gone away, as `head` does, has read enough.
+/// Prints a report with its control characters written out. A reader that closes the pipe early, as `head` does, is no
+/// failure.
 pub(crate) fn print(report: &str) -> Result<(), Failure> {
     match output::print(&visible(report)) {
         Err(cause) if cause.kind() != io::ErrorKind::BrokenPipe => {

@@ -1,4 +1,4 @@
-//! Every scene of a sweep, on all processors.
+//! The scenes of a sweep, on all processors.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
     let mut output = folder(given)?;
     let mut stopped = 0;
     for (path, sweep) in sweeps {
-        // Beside the table of a run.
+        // Another name than the table of a run.
         let name = name(path, "sweep.csv");
         let mut file = output.grows(&name);
         let points = &sweep.points;
@@ -56,7 +56,7 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
     if stopped == 0 { Ok(()) } else { Err(Failure::Runs(format!("{stopped} scenes of the sweep stopped"))) }
 }
 
-/// Takes the answers in their order, as soon as they are there, whoever gives them.
+/// Computes answers on all threads, and passes them to `take` in order, as early as possible.
 fn in_order<T: Sync, R: Send>(
     questions: &[T],
     answer: impl Fn(&T) -> R + Sync,
@@ -73,7 +73,7 @@ fn in_order<T: Sync, R: Send>(
                     let number = next.fetch_add(1, Ordering::Relaxed);
                     questions.get(number).map(|question| (number, question))
                 } {
-                    // Nobody takes it where a row couldn't be written.
+                    // The receiver is gone if a row couldn't be written.
                     if sender.send((number, answer(question))).is_err() {
                         break;
                     }

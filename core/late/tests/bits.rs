@@ -1,5 +1,5 @@
-//! A declaration that is read makes the steps of the one that is compiled, to the bit: all of `examples/declarations` and
-//! all effects of the library, each by the text that the macro leaves.
+//! A declaration that is read makes the steps of the one that is compiled, to the bit: all of `examples/declarations`
+//! and all effects of the library, each by the text that the macro stores.
 
 #[path = "common/same.rs"]
 mod same;
@@ -30,7 +30,7 @@ use simba::simd::AutoF64x4;
 
 use same::{assert_as_compiled, assert_same};
 
-/// Numbers that a declaration makes sense with.
+/// Random parameters for which a declaration is valid.
 trait Sample {
     fn sample(random: &mut Random) -> Self;
 }
@@ -51,7 +51,7 @@ macro_rules! sampled {
     };
 }
 
-/// Symmetric and positive.
+/// A symmetric positive definite matrix.
 fn metric<const N: usize>(random: &mut Random) -> SMatrix<f64, N, N> {
     let root: SMatrix<f64, N, N> = random.sample();
     SMatrix::identity() + root * root.transpose() * 0.3
@@ -82,7 +82,7 @@ macro_rules! random {
     }};
 }
 
-/// Alone.
+/// Compares single declarations.
 macro_rules! as_compiled {
     ($($name:ident { $($field:ident)* })+) => {
         $(for seed in 1..3 {
@@ -93,7 +93,7 @@ macro_rules! as_compiled {
     };
 }
 
-/// Without a kinetic part of its own, beside a compiled body.
+/// Compares declarations without a kinetic part, added to a compiled body.
 macro_rules! as_compiled_beside {
     ($body:ident { $($of_body:ident)* }: $($name:ident { $($field:ident)* })+) => {
         let body = || random!(0, $body { $($of_body)* });
@@ -119,14 +119,14 @@ fn tops() {
     }
 }
 
-/// Its name is that of an effect of the library.
+/// A declaration may share its name with an effect of the library.
 #[test]
 fn a_spring() {
     type Spring = declarations::Spring;
     as_compiled! { Spring { J_d k length rho anchor } }
 }
 
-/// Of these solves do without the Jacobian.
+/// The steps of these are solved without the Jacobian.
 #[test]
 fn of_higher_orders() {
     as_compiled! {
@@ -148,7 +148,7 @@ fn effects_of_the_library() {
     }
 }
 
-/// On SE(2,3), with what moves there.
+/// A body on SE(2,3) with advected vectors.
 #[lagrangian(
     group = SE23,
     gradients,
@@ -186,7 +186,7 @@ fn several_bodies() {
     }
 }
 
-/// In a time of its own: its energy is one more number of the state.
+/// A Lagrangian with a pace: its energy is one more number of the state.
 #[lagrangian(
     group = SO3,
     advected(w = up),
@@ -210,7 +210,7 @@ fn a_pace() {
     as_compiled! { PacedTop { J weight rho up energy } }
 }
 
-/// Body and effect both read: which of them has an unknown part is asked of the values.
+/// Sums of a body and effects that are both read: their values determine which of them has an unknown part.
 #[test]
 fn sums_of_what_is_read() {
     let (body, drag) = (random!(1, RigidBody { J_d }), random!(2, Drag { c J }));
@@ -226,7 +226,7 @@ fn sums_of_what_is_read() {
     assert_same(&(body + gravity), &(late + late_gravity), 5);
 }
 
-/// At a velocity, and by the increment of a step with it.
+/// Compares continuous limits, and Jacobians at a step's increment.
 fn assert_same_terms<A, B>(one: &A, other: &B, seed: u64)
 where
     A: Effect<Scalar = f64, Retraction = CayleyRetraction>,
@@ -277,7 +277,7 @@ fn sums_in_one_program() {
     as_summed! { assert_same 3: CayleyBody { J } Rotor { spin } Thrust { at thrust } };
     as_summed! { assert_same 4: Gravity { m g rho up } RigidBody { J_d } Rotor { spin } Rotor { spin } };
     as_summed! { assert_same 5: LogTop { J weight rho up } Gravity { m g rho up } Drag { c J } };
-    // Its retraction's tangent comes behind the sum of the Jacobians, and not before it.
+    // The tangent of the retraction multiplies the sum of the Jacobians, not each Jacobian.
     as_summed! { assert_same_terms 6: Flyer { J } FluidDrag { C } Thruster { at thrust } };
     let of = |text| Declaration::parse(text).expect("a declaration");
     let [gravity, flyer] = [Gravity::<f64>::DECLARATION, Flyer::DECLARATION].map(of);
@@ -347,7 +347,7 @@ fn a_sum_in_frames() {
     assert!(written.contains("spatial[3 + i] = i == 1;"), "{written}");
 }
 
-/// Numbers of all derivatives of a step, at a random one.
+/// The numbers of all derivatives of a step, at a random step.
 fn derivatives<E>(effect: &E, seed: u64) -> Vec<f64>
 where
     E: SecondDerivatives<Scalar = f64>,
@@ -367,7 +367,7 @@ where
     let (matrix, right_side) = effect.adjoint_system(at, &p);
     let (by_place, by_advected) = effect.adjoint_gradient(at, [&u, &p], &mut |_, _| {});
     [matrix * u, right_side, by_place].into_iter().for_each(&mut add);
-    // What nothing depends on may be visited, and needn't be.
+    // Numbers that nothing depends on may be visited or left out.
     let mut sum = Vector::<E>::zero();
     effect.by_advected(at, &mut |number, start, end| {
         let number = 1.5_f64.powi(i32::try_from(number).unwrap());
@@ -378,7 +378,7 @@ where
     found
 }
 
-/// To the bit; in one program those of a sum to rounding.
+/// Derivatives agree to the bit; in one program those of a sum agree to rounding.
 #[test]
 fn derivatives_of_steps() {
     type Seen = ((((), Vector3<f64>), ()), Vector3<f64>);
@@ -413,7 +413,7 @@ fn derivatives_of_steps() {
     assert_eq!(plain.differentiable(), Err(LateError::NoGradients));
 }
 
-/// With all numbers written in, a step is a shorter program, which is the same but for roundings.
+/// A step with constant parameters is a shorter program, with the same results up to roundings.
 #[test]
 fn specialised_programs_are_shorter() {
     let (J_d, rho, up) = ([2.0, 0.0, 0.0, 0.0, 2.5, 0.0, 0.0, 0.0, 3.0], [0.0, 0.0, 0.4], [0.0, 0.0, 1.0]);
@@ -434,20 +434,20 @@ fn specialised_programs_are_shorter() {
     Interpreter::run(&code, &[], given, &mut constants);
     let lengths = [programs, &specialised(programs, &constants)].map(|all| all.newton_system.operations.len());
     println!("{} operations an iteration, specialised {}", lengths[0], lengths[1]);
-    // Three of them are products of the right side.
+    // Three of them are products of the right-hand side.
     assert!(lengths[0] >= 90 + 3 && lengths[1] <= 61 + 3, "{lengths:?}");
     let (general, specialised) = (after(late.clone()), after(late.specialised()));
     assert!((general - specialised).norm() < 1e-13 * general.norm(), "{general} {specialised}");
 }
 
-/// Texts of one form with numbers of their own, side by side.
+/// Programs of one form with different numbers, in lanes.
 #[test]
 fn lanes_have_the_bits_of_single_steps() {
     let top = random!(1, FullTop { J_d m g rho up });
     let full: Late<SO3, Vector3<f64>, WithEitherKinetic> = Late::like(&top).expect("a declaration");
     let top = random!(2, FourthOrderTop { J weight rho up });
     let fourth: Late<SO3, Vector3<f64>, WithEitherKinetic> = Late::like(&top).expect("a declaration");
-    // Of a torque the kicks are known before a step.
+    // The kicks of a torque are known before a step.
     let both = [RigidBody::<f64>::DECLARATION, Torque::<f64>::DECLARATION].map(|it| Declaration::parse(it).unwrap());
     let values = [numbers(&random!(1, RigidBody { J_d })), numbers(&random!(2, Torque { torque }))].concat();
     let both = Late::of(Declaration::sum(&both).unwrap()).and_then(|late| late.with_all(&values)).expect("numbers");

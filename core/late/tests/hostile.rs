@@ -1,4 +1,4 @@
-//! Texts that nobody trusts, and numbers that don't fit.
+//! Untrusted texts, and numbers that don't fit.
 
 use std::time::{Duration, Instant};
 
@@ -15,7 +15,7 @@ fn body(more: &str) -> String {
     format!("#[lagrangian(group = SO3, l_d = {KINETIC}{more})] struct Body {{ J_d: NonstandardInertia, k: f64 }}")
 }
 
-/// The mistakes of a text that has some.
+/// The mistakes of a wrong text.
 fn mistakes(text: &str) -> Vec<liestep_late::Mistake> {
     match Declaration::parse(text) {
         Err(LateError::Mistakes(mistakes)) => mistakes,
@@ -23,7 +23,7 @@ fn mistakes(text: &str) -> Vec<liestep_late::Mistake> {
     }
 }
 
-/// An expression is read as mathematics: paths, macros, closures that escape, blocks and items mean nothing in it.
+/// An expression is read as mathematics: paths, macros, closures that escape, blocks and items have no meaning in it.
 #[test]
 fn a_text_names_nothing_outside_itself() {
     let outside = [
@@ -50,7 +50,7 @@ fn a_text_names_nothing_outside_itself() {
     }
 }
 
-/// What is too large is refused, and soon.
+/// Texts that are too large are refused within a short time.
 #[test]
 fn large_and_deep_texts_are_refused() {
     let clock = Instant::now();
@@ -66,7 +66,7 @@ fn large_and_deep_texts_are_refused() {
     assert!(clock.elapsed() < Duration::from_secs(60), "{:?}", clock.elapsed());
 }
 
-/// Without the `&` and the points that a compiler asks for it is the same declaration, and whole numbers stay what they are.
+/// The `&` and the decimal points that a compiler requires are optional; whole numbers stay whole where they have to.
 #[test]
 fn liberties_of_notation() {
     let written = |l_d: &str| {
@@ -94,7 +94,7 @@ fn mistakes_have_places() {
     assert_eq!(mistakes("#[lagrangian(group = SO3, l_d = (F)] struct Body {}")[0].line, 1);
 }
 
-/// A text is derived and kept once, whoever declares it.
+/// A text is derived once, and all threads share the declaration.
 #[test]
 fn threads_declare_at_once() {
     let text = body(" - h * k * F.trace()");
@@ -133,7 +133,7 @@ fn what_does_not_fit_is_told() {
     assert!(matches!(Stepper::new(skew, 0.01).unwrap_err(), SetupError::Parameter { field: "J_d", .. }));
 }
 
-/// Products of sums whose expansion a person wouldn't wait for are given up, by a count of work.
+/// Products of sums whose expansion takes too long are refused, by a count of operations.
 #[test]
 fn what_takes_too_long_is_given_up() {
     let sum = (0..30).map(|k| format!("(F * a).dot(&(A * (F * (F * a)) * {k}.5))")).collect::<Vec<_>>().join(" + ");
@@ -149,7 +149,7 @@ fn what_takes_too_long_is_given_up() {
     }
 }
 
-/// A function of a higher order than the library has is called by its name.
+/// Missing functions of a higher order are reported by their names.
 #[test]
 fn missing_functions_are_told() {
     for function in [Function::Stumpff(11), Function::Stumpff(0), Function::LogRatio(7)] {
@@ -160,7 +160,7 @@ fn missing_functions_are_told() {
     }
 }
 
-/// In half the digits, too, with the bits of the compiled step.
+/// Single precision agrees with the compiled step, too, to the bit.
 #[test]
 fn single_precision() {
     let J = Inertia::<f32>::new(Matrix3::new(2.0, 0.1, 0.0, 0.1, 2.5, 0.2, 0.0, 0.2, 3.0)).unwrap();
@@ -176,7 +176,7 @@ fn single_precision() {
     }
 }
 
-/// What a thousand declarations keep; `-- --ignored` measures it.
+/// Memory of a thousand declarations; `-- --ignored` measures it.
 #[test]
 #[ignore = "takes minutes without optimisation"]
 fn a_thousand_declarations_are_kept_in_bounded_memory() {

@@ -1,4 +1,4 @@
-//! Steps as text in other languages: C that is compiled makes the library's steps, and Rust is as rustfmt has it.
+//! Steps as text in other languages: compiled C makes the library's steps, and Rust is formatted as by rustfmt.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// Whether there is such a program; a reason is printed where there isn't.
+/// Whether this program is installed; if it isn't, a reason is printed.
 fn is_there(program: &str) -> bool {
     let found = Command::new(program).arg("--version").output().is_ok();
     if !found {
@@ -44,7 +44,7 @@ fn list(numbers: impl IntoIterator<Item = f64>) -> String {
     format!("{{{}}}", numbers.join(", "))
 }
 
-/// What the compiled program prints: the bits of momentum and attitude after each hundredth step.
+/// The output of the compiled program: the bits of momentum and attitude after each hundredth step.
 fn by_c(text: &str, folder: &Path, [parameters, attitude, momentum, velocity]: [String; 4]) -> Option<String> {
     let main = format!(
         "{text}\n#include <stdio.h>\n#include <string.h>\n#include <stdint.h>\n\
@@ -95,7 +95,7 @@ fn a_step_in_c_has_the_bits_of_the_library() {
         }
     }
     assert_eq!(found, expected);
-    // One operation that is another is seen.
+    // A single wrong operation is detected.
     let (before, after) = text.split_once("static void newton_residual").expect("a stage");
     let wrong = format!("{before}static void newton_residual{}", after.replacen(" - ", " + ", 1));
     assert_ne!(by_c(&wrong, &folder, given), Some(expected));
@@ -112,7 +112,7 @@ fn what_has_no_step_in_c_is_told() {
     assert!(matches!(c(parsed(LogTop::DECLARATION)), Ok(_) | Err(LateError::Function(_))));
 }
 
-/// Formatted, and complete.
+/// Rust text is formatted, and complete.
 #[test]
 fn rust_is_formatted() {
     if !is_there("rustfmt") {
@@ -131,7 +131,7 @@ fn rust_is_formatted() {
     fs::remove_dir_all(folder).expect("the folder is there");
 }
 
-/// Each line has its braces closed, and no sign that LaTeX doesn't know.
+/// LaTeX lines have balanced braces, and only signs that LaTeX has.
 #[test]
 fn equations_are_latex() {
     let made = latex(parsed(FullTop::DECLARATION));

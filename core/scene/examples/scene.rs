@@ -1,10 +1,10 @@
-//! Scene files from a program: each is read, simulated and drawn, and a page made that plays it.
+//! Scene files from a program: each is read, simulated and drawn, and written as a page that plays the motion.
 //!
 //! ```text
 //! cargo run --release -p liestep-scene --example scene -- examples/scenes/sleeping-top.toml
 //! ```
 //!
-//! The program `liestep` does the same, and more: `cargo install --path core/cli`.
+//! The program `liestep` can do this and more: `cargo install --path core/cli`.
 
 use std::error::Error;
 use std::fs;

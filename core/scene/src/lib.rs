@@ -1,9 +1,9 @@
 //! Scenes from files: `read → choose → run → picture, page, table`.
 //!
-//! A file names a body, the effects on it, where the motion starts, the step or an accuracy, and what to draw and to
-//! keep; those in `examples/scenes` show the keys, and [`SceneFile`] lists them. Files of several bodies are [`System`]s, and
-//! [`Scene`] reads either. Numbers are in SI units, or texts with a unit: `"30 deg"`. What is wrong in a file is reported
-//! with its line and column, as a [`Mistake`].
+//! A file names a body, the effects on it, the start of the motion, the step or an accuracy, and what to draw and to
+//! record. The files in `examples/scenes` are examples of the keys, and [`SceneFile`] lists them. Files of several
+//! bodies are [`System`]s, and [`Scene`] reads either. Numbers are in SI units, or texts with a unit: `"30 deg"`.
+//! Mistakes in a file are reported with line and column, as a [`Mistake`].
 //!
 //! ```
 //! let text = r#"

@@ -1,4 +1,4 @@
-//! The program as tests call it, and a scene for it.
+//! Calls of the program, and a scene for them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -29,13 +29,13 @@ step = "10 ms"
 duration = 2
 "#;
 
-/// The program: a scene's types are compiled into its library once, and not a second time into this test.
+/// The program. Its library is compiled already; this test doesn't compile the scene's types a second time.
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_liestep");
 
-/// A folder of a test's own.
+/// A folder for one test.
 pub(crate) fn folder(test: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
-    // What an earlier build has left may be of another format.
+    // An earlier build may have left files of another format.
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
     folder
@@ -49,7 +49,7 @@ pub(crate) fn simulate(folder: &Path, files: &[&str]) -> Output {
     called(folder, &[&["run", "--csv", "--out", "."], files].concat())
 }
 
-/// With this code, a message of which that is a part, and nothing printed.
+/// Asserts this exit code, a message that contains this text, and no output.
 pub(crate) fn refuses(folder: &Path, arguments: &[&str], code: i32, message: &str) {
     let output = called(folder, arguments);
     let text = String::from_utf8(output.stderr).unwrap();
@@ -57,7 +57,7 @@ pub(crate) fn refuses(folder: &Path, arguments: &[&str], code: i32, message: &st
     assert!(output.stdout.is_empty() && output.status.code() == Some(code), "{arguments:?}: {text}");
 }
 
-/// What the program says of a text that it refuses.
+/// The program's message about a text that it refuses.
 pub(crate) fn refused(folder: &Path, text: &str) -> String {
     fs::write(folder.join("top.toml"), text).unwrap();
     let output = simulate(folder, &["top.toml"]);
@@ -65,7 +65,7 @@ pub(crate) fn refused(folder: &Path, text: &str) -> String {
     String::from_utf8(output.stderr).unwrap()
 }
 
-/// The mistakes of `mistakes/{file}.txt`: lines of a right text, those that stand there instead, and the message.
+/// The mistakes in `mistakes/{file}.txt`: lines of a valid text, the lines that replace them, and the message.
 pub(crate) fn mistakes(file: &str, text: &str, message: impl Fn(&str) -> String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/program/mistakes/{file}.txt"));
     let mistakes = fs::read_to_string(&path).unwrap();
@@ -81,7 +81,7 @@ pub(crate) fn mistakes(file: &str, text: &str, message: impl Fn(&str) -> String)
     expect_file![path].assert_eq(&found.collect::<Vec<_>>().join("\n"));
 }
 
-/// The rows of a scene's table, after a run of a text.
+/// The rows of the table of a scene, after a run.
 pub(crate) fn rows(folder: &Path, text: &str) -> Vec<Vec<f64>> {
     fs::write(folder.join("scene.toml"), text).unwrap();
     printed(folder, &["run", "scene.toml", "--csv", "--out", "."]);
@@ -92,7 +92,7 @@ pub(crate) fn table(csv: &str) -> Vec<Vec<f64>> {
     csv.lines().skip(1).map(|row| row.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
 }
 
-/// The largest difference of two tables' numbers.
+/// The largest difference between two tables.
 pub(crate) fn apart(rows: &[Vec<f64>], others: &[Vec<f64>]) -> f64 {
     assert_eq!(rows.len(), others.len());
     rows.iter().flatten().zip(others.iter().flatten()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)

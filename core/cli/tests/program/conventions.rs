@@ -1,4 +1,4 @@
-//! What numbers of a file mean: attitudes, directions, tensors, and the order of parameters.
+//! Conventions of numbers in files: attitudes, directions, tensors, and the order of parameters.
 
 use std::f64::consts::PI;
 
@@ -9,7 +9,7 @@ use liestep::prelude::*;
 use liestep_scene::{Form, Sample, Scene, parse};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
-/// A body with a line for its attitude.
+/// A scene with this line for the attitude.
 fn text(attitude: &str) -> String {
     format!(
         "title = \"a\"\n[body]\nmoments = [3, 3, 4]\n[start]\n{attitude}\nvelocity = [0.1, 0.2, 0.3]\n[run]\nstep = 0.1\n\
@@ -39,8 +39,8 @@ fn same(one: Matrix3<f64>, other: Matrix3<f64>) -> bool {
     (one - other).amax() < 1e-15
 }
 
-/// Euler's angles are z-x-z, yaw, pitch and roll z-y-x, both about axes that turn with the body; a column of an attitude is an axis of the body in
-/// space.
+/// Euler angles are z-x-z; yaw, pitch and roll are z-y-x; both are about axes that turn with the body. A column of an
+/// attitude is a body axis in space.
 #[test]
 fn attitudes() {
     let zxz = about(2, 0.3) * about(0, 0.5) * about(2, 0.7);
@@ -56,7 +56,7 @@ fn attitudes() {
     assert!((velocity - Vector3::new(0.1, 0.2, 0.3)).amax() < 1e-15);
 }
 
-/// Degrees without a unit are thirty radians, and a quaternion with the scalar last is half a turn: neither is taken.
+/// Thirty without a unit would be radians, and a quaternion with the scalar last is half a turn: both are refused.
 #[test]
 fn what_is_ambiguous_is_refused() {
     let degrees = "a.toml:5:13: 30 has no unit: write \"30 rad\" or \"30 deg\"";
@@ -103,7 +103,7 @@ impl Random {
     }
 }
 
-/// Inertias as they are written: bodies of files and of programs start with the same momentum, to the bit.
+/// Inertias are used as written: bodies of files and of programs start with the same momentum, to the bit.
 #[test]
 fn inertias_as_they_are_written() {
     let mut random = Random(1);
@@ -130,7 +130,7 @@ fn inertias_as_they_are_written() {
     }
 }
 
-/// A tensor's entries off its diagonal are `−∫ x y dm`: of two masses at ±(1, 1, 0), `J_xy = −2`.
+/// Off-diagonal entries of a tensor are `−∫ x y dm`: for two masses at ±(1, 1, 0), `J_xy = −2`.
 #[test]
 fn the_sign_of_products_of_inertia() {
     let body = "J = [[2, -2, 0], [-2, 2, 0], [0, 0, 4]]";
@@ -140,8 +140,7 @@ fn the_sign_of_products_of_inertia() {
     assert!((momentum - J * Vector3::new(0.1, 0.2, 0.3)).norm() < 1e-15, "{momentum}");
 }
 
-/// Parameters are in the order of the file, whatever their names: no operation of the C text and no bit depends on the
-/// alphabet.
+/// Parameters are in the order of the file. Their names affect no operation of the C text and no bit.
 #[test]
 fn names_change_no_bit() {
     let own = |[a, b, c, d]: [&str; 4]| {
@@ -160,13 +159,13 @@ fn names_change_no_bit() {
         let [a, b, c, d] = names;
         let listed = format!("[9..10]: {b}\n   parameters[10..11]: {b}{d}\n   parameters[11..12]: {c}\n");
         assert!(text.contains(&format!("[0..9]: {a}_d\n   parameters{listed}")), "{text}");
-        // The names are in the comment that lists them.
+        // The comment that lists the names differs.
         (end, text[text.find("static void constants").unwrap()..].to_owned())
     });
     assert!(all.iter().all(|one| *one == all[0]));
 }
 
-/// Words of other programs have the name of this one behind them.
+/// Names from other programs are refused with the name in this one.
 #[test]
 fn words_of_other_programs() {
     for (line, advice) in [

@@ -1,4 +1,4 @@
-//! The table `ensemble`: members that are drawn, kept and gone on with.
+//! The table `ensemble`: members that are drawn, stored and resumed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use liestep_ensemble::{Shard, Status, Store};
 
 use crate::called::{TOP, called, folder, mistakes, printed, refuses, rows};
 
-/// The top, and what is drawn of it.
+/// The top with an ensemble.
 fn drawn(ensemble: &str) -> String {
     format!("{TOP}\n[ensemble]\nmembers = 40\nseed = 7\n{ensemble}")
 }
@@ -23,7 +23,7 @@ fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     files.into_iter().map(|(_, path)| within(path)).collect()
 }
 
-/// Of a distribution without a spread each member is the file with that value, but for the rounding of what is advected.
+/// A distribution without spread makes each member the file with that value, up to roundings of advected vectors.
 #[test]
 fn a_member_is_the_file_with_its_values() {
     let folder = folder("a_member_is_the_file_with_its_values");
@@ -39,17 +39,17 @@ fn a_member_is_the_file_with_its_values() {
     let shards = shards(&folder.join("top.ensemble"));
     assert_eq!(shards.iter().map(|shard| shard.outcome.finished).sum::<u64>(), 40);
     for shard in &shards {
-        // At the start, after a hundred steps, and at the end.
+        // Rows at the start, after a hundred steps, and at the end.
         assert_eq!(shard.rows.step[..3], [0, 100, 200]);
         for (row, _) in shard.rows.status.iter().enumerate().filter(|(_, status)| **status == Status::Finished) {
             let (time, columns) = expected.split_first().unwrap();
             let kept: Vec<f64> = shard.rows.columns.iter().map(|column| column[row]).collect();
             let [own @ .., spin, g, own_time] = kept.as_slice() else { panic!("{kept:?}") };
-            // What was drawn, in the unit of the file.
+            // Drawn values are stored in the unit of the file.
             assert_eq!((*spin, *g), (72.0, 5.0));
             assert!((own_time - time).abs() < 1e-12);
             let distance = |sign: f64| own.iter().zip(columns).map(move |(a, b)| (a - sign * b).abs());
-            // Of the two quaternions, which come last, it may be the other.
+            // The sign of the quaternion, in the last columns, is arbitrary.
             let quaternion = columns.len() - 4;
             assert!(distance(1.0).take(quaternion).all(|distance| distance < 1e-12));
             assert!([1.0, -1.0].iter().any(|sign| distance(*sign).skip(quaternion).all(|d| d < 1e-12)));
@@ -57,7 +57,7 @@ fn a_member_is_the_file_with_its_values() {
     }
 }
 
-/// Numbers lie where they are drawn from, differ from member to member, and the files are the same however they are made.
+/// Drawn numbers lie in their interval and differ between members. The files don't depend on the shares.
 #[test]
 fn shares_and_a_second_run_make_the_same_files() {
     let folder = folder("shares_and_a_second_run_make_the_same_files");
@@ -67,7 +67,7 @@ fn shares_and_a_second_run_make_the_same_files() {
     assert!(whole.contains("40 finished") && whole.contains("velocity_z"), "{whole}");
     let first = printed(&folder, &["ensemble", "top.toml", "--shard", "1/2", "--threads", "1", "--out", "parts"]);
     let part = files(&folder.join("parts/top.ensemble")).len();
-    // The last share tells of all.
+    // The last share reports all members.
     let last = printed(&folder, &["ensemble", "top.toml", "--shard", "0/2", "--out", "parts"]);
     assert!(first.contains("in this share: 16 finished") && !first.contains("velocity_z"), "{first}");
     assert!(last.contains("seed 7: 40 finished") && last.contains("velocity_z"), "{last}");
@@ -77,7 +77,7 @@ fn shares_and_a_second_run_make_the_same_files() {
     assert!(again.contains(", 0 of them now"), "{again}");
     assert_eq!(printed(&folder, &["report", "top.toml", "--out", "whole"]), again);
     refuses(&folder, &["report", "top.toml", "--out", "nowhere"], 4, "`liestep ensemble` makes it");
-    // Rows that have changed are found by who reads them.
+    // A report detects damaged rows only where it verifies them.
     let damaged = folder.join("whole/top.ensemble").join(&one[1].0);
     let rows = &one[1].1;
     fs::write(&damaged, [&rows[..rows.len() / 2], &[77], &rows[rows.len() / 2 + 1..]].concat()).unwrap();
@@ -94,19 +94,19 @@ fn shares_and_a_second_run_make_the_same_files() {
             shard.rows.columns[place].clone()
         })
         .collect();
-    // A symmetric top keeps its spin.
+    // The axial spin of a symmetric top is constant.
     let rpm = std::f64::consts::PI / 30.0;
     assert!(spin.iter().all(|spin| (59.9 * rpm..90.1 * rpm).contains(spin)) && spin.len() == 40);
     assert!(spin.windows(2).all(|pair| (pair[0] - pair[1]).abs() > 1e-9));
 }
 
-/// The file that is shipped says nothing of chunks: all cores and both of two shares have some of it.
+/// The example file has no chunk size; its default has work for all cores and for both of two shares.
 #[test]
 fn what_is_shipped_has_many_chunks() {
     let folder = folder("what_is_shipped_has_many_chunks");
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes/detumbling.toml");
     let text = fs::read_to_string(shipped).unwrap().replace("falling", "either");
-    // For a twentieth of the time, and with quaternions, of which there are no means.
+    // A twentieth of the time, with quaternions, which have no means.
     let text = text.replace("\"40 min\"", "\"2 min\"") + "\n[output]\ncolumns = [\"quaternion\", \"velocity\"]\n";
     fs::write(folder.join("detumbling.toml"), text).unwrap();
     let part = printed(&folder, &["ensemble", "detumbling.toml", "--shard", "1/2", "--out", "."]);
@@ -119,7 +119,7 @@ fn what_is_shipped_has_many_chunks() {
     assert!(shards(&folder.join("detumbling.ensemble")).iter().all(|shard| shard.names.contains(&"q_w".to_owned())));
 }
 
-/// A mass that is drawn below zero is a member that can't exist, and no failure; one that breaks down is a failure.
+/// A member with a negative mass is counted as impossible, not as failed. A member whose run stops is a failure.
 #[test]
 fn members_fail_by_themselves() {
     let folder = folder("members_fail_by_themselves");
@@ -142,8 +142,8 @@ fn members_fail_by_themselves() {
     assert!(output.status.code() == Some(3) && output.stderr.ends_with(b" members broke down\n"));
 }
 
-/// Of a top that is let go at a tilt between 10° and 90°, and falls: whether it passes 60°, and first when. The interval is
-/// that of Wilson's formula as it is in textbooks, solved for by bisection: `(p − k/n)² = z² p (1 − p)/n`.
+/// A top is released at a tilt between 10° and 90°, and falls: the probability that it passes 60°, and the first time.
+/// The interval is Wilson's in its textbook form, `(p − k/n)² = z² p (1 − p)/n`, solved by bisection.
 #[test]
 fn an_event_has_a_probability() {
     let folder = folder("an_event_has_a_probability");

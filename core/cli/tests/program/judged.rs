@@ -1,4 +1,4 @@
-//! How a run is judged: its step against springs and spins, its start against joints, its end against the motion.
+//! Checks of a run: its step against springs and spins, its start against joints, its end against the exact motion.
 
 use std::fs;
 
@@ -41,7 +41,7 @@ fn spring(bodies: [&str; 2], at: [[f64; 3]; 2], k: f64, length: f64) -> String {
     format!("[[spring]]\nbodies = {bodies:?}\nat = {at:?}\nk = {k:?}\nlength = {length:?}\n")
 }
 
-/// Eight masses of 0.1 kg in a ring of springs of 1.02e5 N/m: `ω = √(4 k/m) = 2020 rad/s`, and a step of 1 ms makes a
+/// Eight masses of 0.1 kg in a ring of springs of 1.02e5 N/m: `ω = √(4 k/m) = 2020 rad/s`, and steps of 1 ms let a
 /// disturbance of 1e-7 m grow without bounds.
 #[test]
 fn springs_that_are_too_stiff() {
@@ -58,18 +58,18 @@ fn springs_that_are_too_stiff() {
     };
     let refused = ring(1.02e5, "1 ms").run().unwrap_err().to_string();
     assert!(refused.contains("at 2020 rad/s") && refused.contains("below 0.00099 s, better 9.9e-5 s"), "{refused}");
-    // At the line of one of the springs; at its first step, as `check` makes it.
+    // The message has the line of a spring; the first step, as in `check`, suffices for it.
     assert!(refused.starts_with("several.toml:") && ring(1.02e5, "1 ms").first(1).is_err(), "{refused}");
     let run = ring(1.02e5, "0.1 ms").run().unwrap();
     assert!(run.notes().is_empty() && last(&run).energy < 1e-8, "{}", notes(&run));
-    // By `√(4 k/m)` again, and `2 asin(hω/2)/(hω)`.
+    // The rate is `√(4 k/m)` again, in steps `2 asin(hω/2)/(hω)` times that.
     let run = ring(4e4, "1 ms").run().unwrap();
     let said = notes(&run);
     assert!(said.contains("is at 1260 rad/s, and a step of 0.001 s makes it 8 % faster"), "{said}");
     assert!(ring(2e4, "1 ms").run().unwrap().notes().is_empty());
 }
 
-/// What joints hold doesn't vibrate: a spring next to a pivot moves a whole rod, `ω² = k r²/J`.
+/// Constrained directions don't vibrate: a spring next to a pivot moves the whole rod, `ω² = k r²/J`.
 #[test]
 fn springs_beside_joints() {
     let held = |k: f64, joint: &str| {
@@ -82,7 +82,7 @@ fn springs_beside_joints() {
                axes = [[0, 1, 0], [0, 1, 0]]\n";
     let ball = "[[joint]]\nkind = \"ball\"\nbodies = [\"space\", \"rod\"]\nat = [[0, 0, 0], [0, 0, 0]]\n";
     for joint in [pin, ball] {
-        // √(1e6 · 1e-4/0.1) = 31.6 rad/s, where the free rod would have √(1e6/0.01).
+        // √(1e6 · 1e-4/0.1) = 31.6 rad/s; the free rod would have √(1e6/0.01).
         assert!(held(1e6, joint).unwrap().notes().is_empty());
         let refused = held(5e8, joint).unwrap_err().to_string();
         assert!(refused.contains("at 707 rad/s"), "{refused}");
@@ -94,7 +94,7 @@ const TIED: &str = "title = \"tied\"\n[body]\nmoments = [1, 1, 1]\nkinetic = \"c
                     at = [0, 0, 1]\nanchor = [0.5, 0, 2.5]\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 0, 0]\n[run]\n\
                     step = 0.01\nduration = 1\n";
 
-/// A step that always has a solution made 2e7 J of 2e5 J.
+/// A stiff spring is refused though its step always has a solution: the energy would rise from 2e5 J to 2e7 J.
 #[test]
 fn a_stiff_spring_of_one_body() {
     for kinetic in ["cayley", "geodesic", "rigid"] {
@@ -105,20 +105,20 @@ fn a_stiff_spring_of_one_body() {
     let soft = one(&TIED.replace("1e6", "1e3")).run().unwrap();
     let [first, end] = [&soft.samples()[0], last(&soft)].map(|sample| sample.energy);
     assert!(soft.notes().is_empty() && (end / first - 1.0).abs() < 0.02, "{first} {end}");
-    // With its arm along the spring it vibrates once it has turned, if its energy is enough for that.
+    // An arm along the spring vibrates after the body has turned, if the energy suffices for the turn.
     let turned =
         TIED.replace("anchor = [0.5, 0, 2.5]", "anchor = [1.2, 0, 0]").replace("at = [0, 0, 1]", "at = [-1, 0, 0]");
     assert!(one(&turned).run().unwrap_err().to_string().contains("makes it grow"));
     let calm = turned.replace("at = [-1, 0, 0]", "at = [0.2, 0, 0]");
     assert!(one(&calm).run().unwrap().notes().is_empty());
-    // It may come there about the axis of the smaller moment alone.
+    // Only the axis of the smaller moment is stiff there, and the body may not reach it: a note suffices.
     let light = TIED.replace("[1, 1, 1]", "[1, 1, 0.01]").replace("k = 1e6\nlength = 1", "k = 1e4\nlength = 0.2");
     let light = light.replace("at = [0, 0, 1]", "at = [1, 0, 0]").replace("[0.5, 0, 2.5]", "[1.2, 0, 0]");
     let run = one(&light.replace("velocity = [0, 0, 0]", "velocity = [0, 1, 0]")).run().unwrap();
     assert!(notes(&run).contains("where this spring pulls across its arm"), "{}", notes(&run));
 }
 
-/// Other potentials are kicks, too: `ω² = |c||w|/J` of gravity and of a dipole, `3 GM/r³ (J₃ − J₁)/J₂` of a gradient.
+/// Other potentials are kicks, too: `ω² = |c||w|/J` for gravity and a dipole, `3 GM/r³ (J₃ − J₁)/J₂` for a gradient.
 #[test]
 fn stiff_potentials_of_one_body() {
     let text = |effect: &str, step: &str| {
@@ -152,7 +152,7 @@ fn stiff_potentials_of_one_body() {
     }
 }
 
-/// Numbers that overflow in an estimate end it, and no loop goes on for ever.
+/// Estimates that overflow end, without an infinite loop.
 #[test]
 fn springs_out_of_range() {
     for (k, arm) in [(1e308, 1e150), (1e-308, 1e-150), (1e308, 1.0), (1e200, 1e200)] {
@@ -164,7 +164,7 @@ fn springs_out_of_range() {
     }
 }
 
-/// Members of an ensemble whose spring is too stiff can't exist, instead of ending somewhere.
+/// Members with a spring that is too stiff are impossible.
 #[test]
 fn stiff_springs_of_members() {
     let folder = folder("stiff_springs_of_members");
@@ -175,14 +175,14 @@ fn stiff_springs_of_members() {
     assert!(notes.contains("can't exist; the first of them is member") && notes.contains("makes it grow"), "{notes}");
 }
 
-/// Ends at one place give the force no direction: it would be zero for ever, with 40 J in the spring.
+/// A spring whose ends coincide has no direction: its force would stay zero, with 40 J in the spring.
 #[test]
 fn springs_without_a_direction() {
     let here = spring(["space", "b0"], [[0.0, 0.0, 1.0]; 2], 80.0, 1.0);
     let run = "[run]\nstep = 0.01\nduration = 0.02\n";
     let message = several(&format!("{}{here}{run}", masses(&[0.0]))).run().unwrap_err().to_string();
     assert!(message.starts_with("several.toml:9:1: the ends of this spring are at one place"), "{message}");
-    // Without a length there is nothing to pull with.
+    // A spring of length zero has no force there.
     let slack = spring(["space", "b0"], [[0.0; 3]; 2], 80.0, 0.0);
     assert!((last(&several(&format!("{}{slack}{run}", masses(&[0.0]))).run().unwrap()).energy).abs() < 1e-30);
     let message = one(&TIED.replace("[0.5, 0, 2.5]", "[0, 0, 1]")).run().unwrap_err().to_string();
@@ -195,7 +195,7 @@ const THROWN: &str = "title = \"rod\"\n[[body]]\nname = \"rod\"\nm = 1\nmoments 
                       bodies = [\"space\", \"rod\"]\nat = [[0, 0, 0], [0, 0, 0.5]]\n[run]\nstep = 0.002\nduration = 0.1\n\
                       nearest = true\n";
 
-/// The nearest start keeps attitudes and turns, mends what can be mended by shifting, and says by how much.
+/// The nearest start preserves attitudes and angular velocities where shifts suffice, and reports the changes.
 #[test]
 fn what_the_nearest_start_changes() {
     let folder = folder("nearest");
@@ -208,7 +208,7 @@ fn what_the_nearest_start_changes() {
     let start = &run.samples()[0].bodies[0];
     assert!((start.velocity - Vector3::new(3.0, 0.0, 0.0)).norm() < 1e-12, "{}", start.velocity);
     assert!((start.position - Vector3::new(0.0, 0.0, -0.5)).norm() < 1e-12, "{}", start.position);
-    // A start that is right is nearest to itself, and nothing is said.
+    // A consistent start is nearest to itself, and no change is reported.
     let right = THROWN
         .replace("[0, 0, 3]", "[0, 0, -0.5]")
         .replace("start.euler", "moving = [-0.29800199, 1.46009987, 0]\nstart.euler");
@@ -221,7 +221,7 @@ fn what_the_nearest_start_changes() {
     assert_eq!(system.changes(&system.run().unwrap()), "");
 }
 
-/// Bodies that no joint ties to space keep their centre of mass and all momentum; where attitudes have to change, it is said.
+/// The nearest start of free bodies preserves their centre of mass and all momentum. Changed attitudes are reported.
 #[test]
 fn the_nearest_start_of_free_bodies() {
     let body = |name: &str, m: f64, x: f64, rest: &str| {
@@ -242,7 +242,7 @@ fn the_nearest_start_of_free_bodies() {
     assert!((centre - Vector3::new(1.5, 0.0, 0.0)).norm() < 1e-12 && start.gap < 1e-14, "{centre}");
     assert!((start.momentum - Vector3::new(0.0, 6.0, 0.4)).norm() < 1e-12, "{}", start.momentum);
     assert!((start.bodies[1].velocity - Vector3::new(0.5, 0.0, 2.0)).norm() < 1e-12);
-    // About one axis they can't turn as they would.
+    // A pin permits turns about one axis only, so the velocities change.
     let system =
         several(&format!("title = \"pair\"\n{pair}{}", joint("kind = \"pin\"\naxes = [[0, 0, 1], [0, 0, 1]]")));
     let changes = system.changes(&system.run().unwrap());
@@ -251,7 +251,7 @@ fn the_nearest_start_of_free_bodies() {
     );
 }
 
-/// A wheel at 500 rad/s by steps of 1 ms turns 500 rad in a second, and (3.13), which turns it 523.6, doesn't go unsaid.
+/// A wheel at 500 rad/s turns by 500 rad in a second. Steps of (3.13) of 1 ms turn it by 523.6 rad, and a note says so.
 #[test]
 fn a_fast_wheel() {
     let wheel = "title = \"wheel\"\n[[body]]\nname = \"wheel\"\nm = 1\nmoments = [0.01, 0.006, 0.006]\nposition = [0, 0, 0]\n\
@@ -278,7 +278,7 @@ fn a_fast_wheel() {
     );
 }
 
-/// The kinetic terms of bodies among several are those of one that is alone.
+/// The kinetic terms of several bodies agree with those of a single body.
 #[test]
 fn kinetic_terms_of_several_bodies() {
     let rest = "start.euler = [0.3, 0.2, 0.1]\nstart.velocity = [1, 2, 1.5]\nrun.step = 0.02\nrun.duration = 2\n";
@@ -311,8 +311,8 @@ fn several_of(line: &str) -> String {
     )
 }
 
-/// The thin rod of a public report, by its default and by steps of 1 ms: attitude and velocity after 10 s by Euler's
-/// equations with a quaternion, in 30 digits by extrapolation, where 500 and 1000 steps agree in 20.
+/// A thin rod from a public report, with the default method and with steps of 1 ms. The reference after 10 s is by
+/// Euler's equations with a quaternion, in 30 digits by extrapolation; 500 and 1000 steps agree in 20.
 #[test]
 fn a_thin_rod() {
     let rod = "title = \"rod\"\n[body]\nmoments = [1.7231e-4, 6.58e-6, 1.7243e-4]\n[start]\neuler = [0, 0, 0]\n\
@@ -322,7 +322,7 @@ fn a_thin_rod() {
     let off = off(&run, ROD);
     assert!(off < 1e-9, "{off:e}");
     assert!(scene.end_error(&run).is_empty() && scene.summary(&run).contains("  the end is off by at most about "));
-    // A step that is given is judged by another: the estimate is the error, but for a factor of two.
+    // The error of a prescribed step is estimated by a second run, up to a factor of two.
     let coarse = rod.replace("[run]\n", "[run]\nstep = \"0.1 ms\"\n");
     let scene = one(&coarse);
     let run = scene.run().unwrap();
@@ -332,7 +332,7 @@ fn a_thin_rod() {
     assert!((0.5..2.0).contains(&(estimate / error)), "{said} {error:e}");
 }
 
-/// How far the attitude at the end of a run is from that of a quaternion, rad.
+/// The angle between the attitude at the end of a run and a quaternion, rad.
 fn off(run: &Run, [w, x, y, z]: [f64; 4]) -> f64 {
     let exact = nalgebra::UnitQuaternion::new_normalize(nalgebra::Quaternion::new(w, x, y, z));
     let turned = exact.to_rotation_matrix().matrix() - last(run).bodies[0].attitude.as_matrix();
@@ -342,8 +342,8 @@ fn off(run: &Run, [w, x, y, z]: [f64; 4]) -> f64 {
 const ROD: [f64; 4] =
     [-0.935_539_411_984_150_5, -0.233_301_800_853_360_36, -0.041_715_420_294_214_68, -0.261_908_575_752_314_6];
 
-/// The first listing of README, without a step: after 20 s, as Euler's equations with a quaternion have it in 30 digits by
-/// extrapolation, where 100 and 200 steps agree in 20; `DOP853` at 1e-13 has 11 of them.
+/// The first listing of README, without a step. The reference after 20 s is by Euler's equations with a quaternion, in
+/// 30 digits by extrapolation; 100 and 200 steps agree in 20, and `DOP853` at 1e-13 in 11.
 #[test]
 fn the_top_of_readme() {
     let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md")).unwrap();
@@ -356,9 +356,9 @@ fn the_top_of_readme() {
     let velocity = Vector3::new(-0.212_202_399_107_379_03, 0.367_545_336_741_989, std::f64::consts::TAU);
     let off = [off(&run, attitude), (last(&run).bodies[0].velocity - velocity).norm()];
     assert!(off.iter().all(|off| *off < 1e-5), "{off:?}");
-    // As many as a picture needs, though few are needed for the end.
+    // A picture needs this many steps, though fewer would do for the end.
     assert!(run.samples().len() == 1001 && (last(&run).time - 20.0).abs() < 1e-12);
-    // By steps of 10 ms it is 0.08 rad off, and the program says so.
+    // Steps of 10 ms have an error of 0.08 rad, which the program reports.
     let stepped = one(&readme_with_a_step(&readme));
     let run = stepped.run().unwrap();
     let said = stepped.end_error(&run);
@@ -370,7 +370,7 @@ fn readme_with_a_step(readme: &str) -> String {
     scene.split("```").next().unwrap().replace("step = \"10 ms\"\n", "").replace("duration", "step = 0.01\nduration")
 }
 
-/// An accuracy that a run without a step asks for isn't there for all scenes; each says what to write.
+/// Not all scenes have a method for an accuracy; each message says what to write in the file.
 #[test]
 fn runs_without_a_step() {
     let text = |more: &str| {
@@ -388,7 +388,7 @@ fn runs_without_a_step() {
         message("[ensemble]\nmembers = 3\ndraw.start.velocity = [0, 0, { from = 1, to = 2 }]\n")
             .contains("give a `step`")
     );
-    // A pair of runs that the machine can't make in seconds.
+    // Runs of a length that no machine completes in seconds.
     let folder = folder("runs_without_a_step");
     fs::write(
         folder.join("long.toml"),
@@ -401,7 +401,7 @@ fn runs_without_a_step() {
     assert!(output.status.success());
 }
 
-/// Energies of small bodies have digits, and times of steps no rounding.
+/// Small energies are printed with digits, and times of steps without rounding.
 #[test]
 fn digits_of_a_report() {
     let text = "title = \"grain\"\n[body]\nmoments = [1e-12, 1e-12, 1e-12]\n[start]\neuler = [0, 0, 0]\n\
@@ -411,7 +411,7 @@ fn digits_of_a_report() {
     assert!(report.contains("energy 2e-12 J → 2e-12 J, momentum 2e-12 → 2e-12 kg m²/s"), "{report}");
 }
 
-/// No run is of no time, and none goes back.
+/// Durations of zero and below are refused.
 #[test]
 fn runs_of_no_steps() {
     let folder = folder("runs_of_no_steps");

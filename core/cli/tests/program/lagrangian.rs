@@ -1,4 +1,4 @@
-//! A Lagrangian in a file: the same rows as by the library's effects, and mistakes at their places.
+//! A Lagrangian in a file: the rows agree with the library's effects, and mistakes have their places.
 
 use std::f64::consts::{FRAC_PI_4, TAU};
 use std::fs;
@@ -42,7 +42,7 @@ rho = [0, 0, 1]
 up = [0, 0, 1]
 "#;
 
-/// By its own step and composed; of what is typed as `l`, to rounding.
+/// Rows agree to the bit by the scene's own step and by a composition, and to rounding for a continuous `l`.
 #[test]
 #[allow(clippy::float_cmp)] // to the bit
 fn it_has_the_rows_of_the_librarys_effects() {
@@ -50,7 +50,7 @@ fn it_has_the_rows_of_the_librarys_effects() {
     for method in ["", "method = { composition = \"Suzuki 4\" }\n"] {
         let run = format!("{RUN}{method}");
         let (own, library) = (rows(&folder, &(TOP.to_owned() + &run)), rows(&folder, &(BY_EFFECTS.to_owned() + &run)));
-        // Energies are those of another sum.
+        // Energies are summed in another order.
         let motion = |rows: &[Vec<f64>]| rows.iter().map(|row| row[..4].to_vec()).collect::<Vec<_>>();
         assert_eq!((own.len(), motion(&own)), (201, motion(&library)));
     }
@@ -65,7 +65,7 @@ fn it_has_the_rows_of_the_librarys_effects() {
     assert!(worst < 1e-10, "{worst:e}");
 }
 
-/// One of the fourth order, solved without its Jacobian; an ensemble that draws its parameters; what is derived.
+/// A Lagrangian of fourth order, solved without its Jacobian; an ensemble that draws its parameters; its derivation.
 #[test]
 fn it_is_a_scene_as_any_other() {
     let folder = folder("lagrangian-scene");
@@ -94,7 +94,8 @@ J = { tensor = [[2, 0.1, 0], [0.1, 3, 0], [0, 0, 4]] }
     written("--c", "int liestep_step(const Stepper *stepper, State *state) {");
 }
 
-/// Beside a body and beside a Lagrangian it does the work of the library's; an ensemble draws its parameters.
+/// A force in a file agrees with the library's torque, beside a body and beside a Lagrangian; an ensemble draws its
+/// parameters.
 #[test]
 fn a_force_of_its_own() {
     let folder = folder("force");
@@ -115,7 +116,7 @@ fn a_force_of_its_own() {
     assert!(refused(&folder, &accuracy).contains("`force` does work, so give a `step`"));
 }
 
-/// Steps of a transformed time: rows have the time itself, and the energy stays.
+/// Steps of a transformed time: rows have the physical time, and the energy is conserved.
 #[test]
 fn it_has_a_pace() {
     let folder = folder("lagrangian-pace");
@@ -130,7 +131,7 @@ fn it_has_a_pace() {
     assert!(refused(&folder, &composed).contains("a pace is that of the Lagrangian's own step"));
 }
 
-/// Steps of different lengths are those of the library.
+/// Steps of varying length agree with those of the library.
 #[test]
 fn it_has_a_density() {
     let folder = folder("lagrangian-density");

@@ -1,4 +1,4 @@
-//! Mutated scene files: an answer with line and column or a run, nothing else.
+//! Mutated scene files: each gives a mistake with line and column, or a run.
 
 use std::fs;
 use std::path::Path;
@@ -20,7 +20,7 @@ impl Random {
     }
 }
 
-/// The files that are shipped, and one with every key.
+/// The example files, and one with every key.
 fn seeds() -> Vec<String> {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes");
     let mut paths: Vec<_> = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
@@ -50,13 +50,13 @@ fn seeds() -> Vec<String> {
                 at = [[0, 0, 0.5], [0, 0.1, -0.5]]\nk = 30\nlength = 0.4\n[[joint]]\nkind = \"ball\"\n\
                 bodies = [\"b\", \"space\"]\nat = [[0, 0, 0.5], [0, 0, 2.5]]\n[run]\nstep = 0.01\nduration = 1\nnearest = true\n\
                 [picture]\nplane = \"yz\"\n[output]\ncolumns = [\"position\", \"momentum\", \"angular-momentum\"]\nevery = 2\n";
-    // A search for an accuracy that takes no time.
+    // A shorter search for an accuracy.
     let short = |text: String| text.replace("accuracy = 1e-9", "accuracy = 1e-6").replace("\"60 s\"", "0.1");
     let files = paths.iter().map(|path| short(fs::read_to_string(path).unwrap()));
     files.chain([all.to_owned(), split.to_owned(), held.to_owned()]).collect()
 }
 
-/// What a slip of the hand leaves, and what a number can't be.
+/// Typical slips, and invalid numbers.
 const WORDS: [&str; 36] = [
     "nan",
     "inf",
@@ -106,7 +106,7 @@ fn mutated(seed: &str, random: &mut Random) -> String {
         match random.below(8) {
             0 => drop(letters.drain(at..(at + 1 + random.below(12)).min(letters.len()))),
             1 => drop(letters.splice(at..at, WORDS[random.below(WORDS.len())].chars())),
-            // A value or a key for another.
+            // Replaces a value or a key.
             2 => drop(letters.splice(start..end, WORDS[random.below(WORDS.len())].chars())),
             3 => {
                 let from = random.below(letters.len());
@@ -117,7 +117,7 @@ fn mutated(seed: &str, random: &mut Random) -> String {
                 let other = random.below(letters.len());
                 letters.swap(at, other);
             }
-            // The next number, by another digit.
+            // Replaces a digit of the next number.
             _ => {
                 let digit = letters[at..].iter().position(char::is_ascii_digit);
                 if let Some(digit) = digit {
@@ -141,7 +141,7 @@ fn assert_placed(mistake: &Mistake, text: &str) {
     assert!(mistake.to_string().len() < 2000, "{mistake}");
 }
 
-/// Makes two members of an ensemble and some of their steps.
+/// Constructs two members of an ensemble, and runs some of their steps.
 fn make_members(drawn: &SceneEnsemble, text: &str, random: &mut Random) {
     for _ in 0..2 {
         #[allow(clippy::cast_precision_loss)] // a share
@@ -154,7 +154,7 @@ fn make_members(drawn: &SceneEnsemble, text: &str, random: &mut Random) {
         };
         let made = drawn.member(&mut draw).and_then(|scene| {
             let (stepper, mut state) = scene.stepper()?;
-            // A step that has no solution is the member's own failure.
+            // A step without a solution is the member's own failure.
             let _ = stepper.run(&mut state, 30);
             assert!(state.momentum().iter().all(|number| number.is_finite()), "{text}");
             scene.first(1)
@@ -165,7 +165,7 @@ fn make_members(drawn: &SceneEnsemble, text: &str, random: &mut Random) {
     }
 }
 
-/// Makes some steps of a system, and draws them.
+/// Runs some steps of a system, and draws them.
 fn make_system(system: &System, text: &str, draws: bool) -> Result<(), Mistake> {
     let run = system.first(30)?;
     for sample in run.samples() {
@@ -177,8 +177,8 @@ fn make_system(system: &System, text: &str, draws: bool) -> Result<(), Mistake> 
     Ok(())
 }
 
-/// Runs this number of files, and returns how many of them ran, of how many members were made, and how many had several
-/// bodies.
+/// Runs this number of files. Returns the numbers of files that ran, of members that were constructed, and of files
+/// with several bodies.
 fn survive(cases: usize, seed: u64) -> [usize; 3] {
     let (seeds, mut random, mut ran, mut drawn, mut several) = (seeds(), Random(seed), 0, 0, 0);
     for case in 0..cases {

@@ -1,4 +1,4 @@
-//! Satellites on orbits, against integrations that know Newton's law and no Kepler.
+//! Satellites on orbits, compared with integrations by Newton's law instead of Kepler's.
 
 use std::cell::Cell;
 use std::fs;
@@ -36,10 +36,11 @@ fn rk4<const N: usize>(y: &mut SVector<f64, N>, h: f64, f: &dyn Fn(&SVector<f64,
     *y += (a + (b + c) * 2.0 + d) * (h / 6.0);
 }
 
-/// A torque by the place of the satellite, its angular velocity and what turns space into the body.
+/// A torque as a function of the satellite's position, its angular velocity and the rotation from space to body.
 type Torque<'a> = &'a dyn Fn(Vector3<f64>, &Vector3<f64>, &Matrix3<f64>) -> Vector3<f64>;
 
-/// Satellite and planet by Newton's law, the body by Euler's equations: quaternion and velocity after 7800 s.
+/// Integrates satellite and planet by Newton's law, and the body by Euler's equations. Returns the velocity and the
+/// attitude after 7800 s.
 fn integrated(
     e: f64,
     normal: Vector3<f64>,
@@ -52,11 +53,11 @@ fn integrated(
     let f = |y: &SVector<f64, 13>| {
         let part = |place: usize| Vector3::new(y[place], y[place + 1], y[place + 2]);
         let (place, moving, turning) = (part(0), part(3), part(6));
-        // In semi-major axes.
+        // Lengths in semi-major axes.
         let fall = place * (-RATE * RATE / place.norm().powi(3));
         let q = Quaternion::new(y[9], y[10], y[11], y[12]);
         let R = UnitQuaternion::new_normalize(q).to_rotation_matrix();
-        // What is in space as the body sees it.
+        // The position in the body frame.
         let seen = R.transpose() * place;
         let sum = torque(seen, &turning, &R.transpose().into_inner());
         let spin = J.try_inverse().unwrap() * (sum - turning.cross(&(J * turning)));
@@ -94,7 +95,7 @@ fn in_space_it_is_as_newtons_and_eulers_equations_have_it() {
         let field = place * (3.0 * along / r.powi(5)) - m / r.powi(3);
         field.cross(turning).cross(&field) * -1e7
     };
-    // The direction of the planet turns by twice the area, which is swept evenly, over the square of the distance.
+    // The direction of the planet turns at twice the areal velocity, a constant, over the square of the distance.
     let areal = Cell::new(0.0);
     let drag = |place: Vector3<f64>, turning: &Vector3<f64>, to_body: &Matrix3<f64>| {
         (to_body * normal * (areal.get() / place.norm_squared()) - turning) * 0.05
@@ -119,7 +120,8 @@ fn in_space_it_is_as_newtons_and_eulers_equations_have_it() {
     }
 }
 
-/// On a circle `E − n L·ẑ` is kept: it is the energy in the frame that turns with the orbit, of the direction of each moment.
+/// The energy `E − n L·ẑ` in the orbiting frame is conserved on a circle, with `E` at the present direction of the
+/// planet.
 #[test]
 fn the_energy_is_that_of_the_moment() {
     let folder = folder("the_energy_is_that_of_the_moment");
@@ -132,7 +134,7 @@ fn the_energy_is_that_of_the_moment() {
     assert!(off < 1e-4 * swing, "{off} {swing}");
 }
 
-/// Events between steps, a sweep, an ensemble and a page go with an orbit as with what rests.
+/// Events between steps, a sweep, an ensemble and a page work along an orbit, too.
 #[test]
 fn all_commands_have_orbits() {
     let folder = folder("all_commands_have_orbits");
@@ -147,7 +149,7 @@ fn all_commands_have_orbits() {
     fs::write(folder.join("events.toml"), text.replace("\"energy\", \"spatial", "\"spatial") + event).unwrap();
     printed(&folder, &["run", "events.toml", "--csv", "--out", "."]);
     let events = fs::read_to_string(folder.join("events.events.csv")).unwrap();
-    // The first axis passes the plane of the second and third axes of space where the angle is a right one.
+    // The first axis passes the plane of the second and third axes of space at a right angle.
     for row in events.lines().skip(1) {
         let numbers: Vec<f64> = row.split(',').skip(2).map(|cell| cell.parse().unwrap()).collect();
         let turned = 2.0 * numbers[4].atan2(numbers[1]);
@@ -162,7 +164,7 @@ fn all_commands_have_orbits() {
     printed(&folder, &["sweep", "scene.toml", "--out", "."]);
     let swept = table(&fs::read_to_string(folder.join("scene.sweep.csv")).unwrap());
     assert!(swept.len() == 2 && (swept[0][2] - swept[1][2]).abs() > 1e-4, "{swept:?}");
-    // A member is the scene, and its energy in the middle, too.
+    // A member agrees with the scene in the middle and at the end, in its energy, too.
     let run = table(&fs::read_to_string(folder.join("scene.csv")).unwrap());
     printed(&folder, &["ensemble", "scene.toml", "--out", "."]);
     let store = liestep_ensemble::Store::folder(folder.join("scene.ensemble")).unwrap();
@@ -178,7 +180,7 @@ fn all_commands_have_orbits() {
     }
 }
 
-/// Steps with `dt ∝ r^{3/2}` end with the second round, and are of second order in their number.
+/// Steps with `dt ∝ r^{3/2}` end with the second revolution, and are of second order in their number.
 #[test]
 fn steps_follow_an_orbit() {
     let folder = folder("steps_follow_an_orbit");
@@ -201,8 +203,8 @@ fn steps_follow_an_orbit() {
     let told = [&["check", "both.toml"][..], &["run", "both.toml", "--html"]].map(|words| printed(&folder, words));
     let shown = ["out/both.svg", "out/both.html"].map(|name| fs::read_to_string(folder.join(name)).unwrap());
     assert_eq!([told, shown].as_flattened().concat().matches(" 15 s on the average").count(), 4);
-    // The step of (3.13) turns a body at the rate Ω too far by (hΩ)³/6: most in the long steps far from the planet. The
-    // geodesic one doesn't.
+    // The step of (3.13) turns a body at the rate Ω too far by (hΩ)³/6, most in the long steps far from the planet. The
+    // geodesic step doesn't.
     let text = text.replace("105, 110]", "105, 110]\nkinetic = \"geodesic\"");
     let geodesic = rows(&folder, &text.replace("step = 7800.0", "steps_per_orbit = 400")).pop().unwrap();
     let geodesic = (geodesic[4].atan2(geodesic[1]) - 0.5 * fine).sin().abs();

@@ -1,4 +1,4 @@
-//! The page that plays a motion, in a browser where there is one.
+//! The page that plays a motion, tested in a browser where one is installed.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +13,7 @@ fn page(folder: &Path, title: &str) -> String {
     fs::read_to_string(folder.join("top.html")).unwrap()
 }
 
-/// Nothing in it is to be loaded, and a title ends no tag.
+/// A page loads nothing, and a title closes no tag.
 #[test]
 fn it_is_complete() {
     let page = page(&folder("page"), r"</title><script>alert(1)</script> & \u0000");
@@ -29,7 +29,7 @@ fn it_is_complete() {
     assert!(page.len() < 60_000, "{}", page.len());
 }
 
-/// A recorded run is played as the run itself is, but for what a table doesn't say: title and body.
+/// The page of a recorded run agrees with that of the run itself, except for title and body, which a table lacks.
 #[test]
 fn a_table_is_replayed() {
     let folder = folder("replay");
@@ -58,11 +58,11 @@ fn a_table_is_replayed() {
     refused(&format!("{names}0,1,1,0,0\n"), ":2:1: the quaternion isn't a unit one");
     refused(&format!("\"a \"\"b\"\",\nc\",{names}1,0,1,0,0,0\n\n1,0,1,0,0,0\n"), ":5:1: is not later");
 
-    // What else a recorder's table may have: names in quotes, and gaps.
+    // A recorder's table may also have names in quotes, and gaps.
     let table = "t,q_w,q_x,q_y,q_z,\"drag, N\",energy\n0,1,0,0,0,inf,NaN\n1,1,0,0,0,1e-3,2.5\n2,1,0,0,0,-inf,NaN\n";
     fs::write(folder.join("gaps.csv"), table).unwrap();
     printed(&folder, &["replay", "gaps.csv", "--out", "."]);
-    // NaN, 0 and NaN, of single precision.
+    // NaN, 0 and NaN, in single precision.
     let energy = "{name: \"energy\", values: \"AADAfwAAAAAAAMB/\"}";
     assert!(fs::read_to_string(folder.join("gaps.html")).unwrap().contains(energy));
 }
@@ -75,7 +75,7 @@ fn browser() -> Option<&'static str> {
         .find(|name| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success()))
 }
 
-/// The script runs to its end, all is drawn, and the picture isn't empty.
+/// The script runs to its end without an error, and the picture isn't empty.
 #[test]
 fn a_browser_shows_it() {
     let Some(browser) = browser() else {
@@ -102,10 +102,10 @@ fn a_browser_shows_it() {
     assert_eq!(document.matches("<canvas").count(), 5);
     assert!(document.contains("<output>1.50 s</output>"), "{document}");
     shown("top.html", &["--screenshot=top.png"]);
-    // A page with nothing on it is a tenth of that.
+    // An empty page has a tenth of that.
     assert!(fs::metadata(folder.join("top.png")).unwrap().len() > 40_000);
 
-    // It plays, is turned and zoomed, and goes where a chart is clicked.
+    // The page plays, can be turned and zoomed, and goes to the time of a click in a chart.
     let script = r#"<script>{
         const root = document.documentElement, clock = document.querySelector("output"), button = document.querySelector("button");
         const [view, chart] = document.querySelectorAll("canvas"), pixels = canvas => canvas.toDataURL();
@@ -135,6 +135,6 @@ fn a_browser_shows_it() {
         assert!(root.contains(word), "{root}");
     }
     let played = root.split_once("data-played=\"").unwrap().1.split_once(' ').unwrap().0;
-    // How many frames a browser without a screen makes in a second is its own affair.
+    // The frame rate of a browser without a screen is unknown.
     assert!((0.01..1.5).contains(&played.parse::<f64>().unwrap()) && !root.contains("data-error"), "{root}");
 }

@@ -14,7 +14,7 @@ fn its_scenes_run() {
     let scene = blocks.iter().find(|block| block.starts_with("title = \"My top\"")).unwrap();
     let more = blocks.iter().find(|block| block.starts_with("[[event]]")).unwrap();
     let run = liestep_scene::parse("README.md", scene).unwrap().run().unwrap();
-    // All steps are in the picture, and the last is at the end.
+    // The picture has all steps, and the last is at the end.
     assert!(run.steps() >= 1000 && run.samples().len() as u64 == run.steps() + 1, "{}", run.steps());
     assert!((run.samples().last().unwrap().time - 20.0).abs() < 1e-9);
     let several = blocks.iter().find(|block| block.contains("[[body]]")).unwrap();
@@ -34,19 +34,19 @@ fn its_declared_top_agrees_with_a_runge_kutta_method() {
     let run = liestep_scene::parse("README.md", scene.split("```").next().unwrap()).unwrap().run().unwrap();
     let last = run.samples().last().unwrap();
     assert!((last.time - 10.0).abs() < 1e-9);
-    let tip = last.attitude * nalgebra::Vector3::z();
+    let tip = last.bodies[0].attitude.as_matrix() * nalgebra::Vector3::z();
     // The axis that the file's start is turned about is the x axis of the body, as that of the listing.
     assert!((tip - nalgebra::Vector3::new(0.576_090_70, 0.407_715_11, 0.708_440_47)).norm() < 1e-5, "{tip}");
 }
 
-/// A first screen is short: words are what stands between spaces, those of tables and listings, too.
+/// The first screen is short. Words are counted between spaces, in tables and listings, too.
 #[test]
 fn it_is_short() {
     let words = file("README.md").split_whitespace().count();
     assert!(words <= 1500, "{words} words");
 }
 
-/// What README says of the program is run by continuous integration.
+/// Continuous integration runs the commands of README.
 #[test]
 fn its_commands_are_run() {
     let (readme, checks) = (file("README.md"), file(".ci/run"));

@@ -1,4 +1,4 @@
-//! What the runs of scene files give: what programs do, and every file of `examples/scenes`.
+//! Runs of scene files: they agree with programs, and every file in `examples/scenes` runs.
 
 use std::f64::consts::PI;
 use std::fs;
@@ -21,22 +21,22 @@ fn body() -> PrincipalBody {
     PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap() }
 }
 
-/// Its weight.
+/// The weight of the top.
 fn gravity() -> Gravity {
     Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() }
 }
 
-/// Its attitude and angular velocity at the start.
+/// The top's attitude and angular velocity at the start.
 fn start() -> (UnitQuaternion<f64>, Vector3<f64>) {
     let tilt = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), 45.0 * (PI / 180.0));
     (tilt, Vector3::new(0.0, 0.0, 60.0 * (6.0 * (PI / 180.0))))
 }
 
-/// The table of a file has the numbers, the signs and the digits of a program's.
+/// The table of a file agrees with that of a program's recorder, in numbers, signs and digits.
 #[test]
 fn a_table_is_that_of_a_recorder() {
     let folder = folder("recorded");
-    // The body turns over several times, so the quaternion that is nearer to the row before isn't that with `w ≥ 0`.
+    // The body turns over several times, so that the continuous quaternion passes through `w < 0`.
     let columns = "[output]\ncolumns = [\"quaternion\", \"velocity\", \"momentum\", \"energy\"]\nevery = 7\n";
     fs::write(folder.join("top.toml"), TOP.replace("[drag]\nc = 1e-3\n", columns)).unwrap();
     printed(&folder, &["run", "top.toml", "--csv", "--out", "."]);
@@ -49,13 +49,13 @@ fn a_table_is_that_of_a_recorder() {
     stepper.observed(&mut state).every(7, |now| recorder.record(now)).steps(200).unwrap();
     recorder.record(&Moment::of_step(&stepper, &state)).unwrap();
     let expected = String::from_utf8(recorder.finish().unwrap().into_inner().unwrap()).unwrap();
-    // All but the defect.
+    // All columns but the defect.
     let expected: Vec<_> = expected.lines().map(|line| line.rsplit_once(',').unwrap().0).collect();
     assert_eq!(table.lines().collect::<Vec<_>>(), expected);
     assert!(self::table(&table).iter().any(|row| row[1] < -0.1), "{table}");
 }
 
-/// A run that stops leaves the rows that there were.
+/// A run that stops leaves the rows up to then.
 #[test]
 fn a_run_that_stops_has_a_table() {
     let folder = folder("stops");
@@ -66,13 +66,13 @@ fn a_run_that_stops_has_a_table() {
     assert!(output.status.code() == Some(3) && text.contains(": stopped at t = "), "{text}");
     let rows = table_of(&folder.join("top.csv"));
     let last = rows.last().unwrap()[0];
-    // A time as a person writes it, without the rounding of the last digits.
+    // Times are printed without the rounding errors of the last digits.
     let stop: f64 = text.split("stopped at t = ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     assert!((stop - last).abs() < 1e-9 && stop.to_string().len() < 6, "{text}");
     assert!(rows.len() > 20 && text.contains(&format!("stopped at t = {stop} s")), "{text}");
 }
 
-/// Every file that is there runs, moves, and has a picture and a table.
+/// Every example file runs, moves, and has a picture and a table.
 #[test]
 fn the_scenes_run() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes");
@@ -95,7 +95,7 @@ fn the_scenes_run() {
         assert!(rows.len() > 500 && rows.first() != rows.last(), "{}", path.display());
         assert!(rows.iter().flatten().all(|value| value.is_finite()), "{}", path.display());
         assert!(result("svg").matches("<polyline").count() > 3, "{}", path.display());
-        // Small enough to be kept beside the file, where the gallery has it.
+        // The picture is small enough for the repository, where the gallery displays it.
         assert!(result("svg").len() < 60_000, "{}", path.display());
         let name = path.file_stem().and_then(|stem| stem.to_str()).unwrap();
         assert!(gallery.contains(&format!("({name}.toml)")) && gallery.contains(&format!("/{name}.svg)")), "{name}");
@@ -110,8 +110,8 @@ fn the_scenes_run() {
     assert!(compared >= 12, "{compared}");
 }
 
-/// But for a pixel, which is two of a picture's units; and without the charts of what is rounding, which begins with the
-/// sines of the machine.
+/// Asserts equal pictures up to a pixel, two of a picture's units. Charts of rounding errors are left out, as sines
+/// differ between machines.
 fn assert_same_picture(made: &str, kept: &str, name: &str) {
     // The scale of such a chart goes down to 10⁻¹⁰ at least.
     let is_of_rounding = |chart: &str| {
@@ -131,8 +131,7 @@ fn assert_same_picture(made: &str, kept: &str, name: &str) {
     assert!(moved <= 2.0, "{name}: {moved}");
 }
 
-/// All effects at once: what a file's scene does is what the sum in a program does, bit for bit, and the units are those
-/// of SI.
+/// A file with all effects agrees with the sum in a program, to the bit, and its units are those of SI.
 #[test]
 fn a_file_may_have_every_effect() {
     let others = "[gravity_gradient]\nGM = 2\nr = 3\ndirection = [1, 0, 0]\n\
@@ -145,7 +144,7 @@ fn a_file_may_have_every_effect() {
     let rows = rows(&folder("all"), &TOP.replace("[run]", others));
     assert_eq!(rows.len(), 201);
     let J = NonstandardInertia::from(body().J_d).to_inertia();
-    // Effects are added in the order of the list, and then to the body.
+    // Effects are summed in the order of the list, and then added to the body.
     let effects = gravity()
         + GravityGradient { GM: 2.0, r: 3.0, J, direction: Vector3::x() }
         + Dipole { moment: Vector3::new(0.0, 0.1, 1.0), field: Vector3::new(0.2, 0.0, 1.0) }
@@ -158,8 +157,8 @@ fn a_file_may_have_every_effect() {
     same_as(&rows[200], Stepper::new(body() + effects, 10.0 * 1e-3), 0.0);
 }
 
-/// Each effect that the library exports has the table of its name in scene files, and each body its `kinetic`: as the
-/// program lists them where it knows a name not.
+/// Each effect of the library has a table of its name in scene files, and each body a value of `kinetic`, as listed in
+/// messages about unknown names.
 #[test]
 fn no_effect_is_without_a_table() {
     let folder = folder("effects");
@@ -183,7 +182,7 @@ fn no_effect_is_without_a_table() {
     assert!(names.len() > 14, "{names:?}");
     for name in names {
         let has = match name.strip_suffix("Body") {
-            // The rigid one, about its principal axes.
+            // The rigid body in its principal axes.
             Some("Principal") => kinetic.contains(&"rigid".to_owned()),
             Some(kind) => kinetic.contains(&in_words(kind, "-")),
             None => tables.contains(&in_words(name, "_")),
@@ -192,13 +191,14 @@ fn no_effect_is_without_a_table() {
     }
 }
 
-/// The last row of the top without drag, with a line in its tables `body` and `run` more.
+/// The last row of the top without drag, with an additional line in the tables `body` and `run`.
 fn last_row(test: &str, body: &str, run: &str) -> Vec<f64> {
     let text = TOP.replace("[drag]\nc = 1e-3\n", "").replace("moments = [3, 3, 4]\n", body);
     rows(&folder(test), &text.replace("duration = 2\n", &format!("duration = 2\n{run}\n"))).pop().unwrap()
 }
 
-/// What a program does with the same scene and method, with velocity and energy off by so much of themselves at most.
+/// Asserts that a program with the same scene and method agrees with a row, within a relative error of velocity and
+/// energy.
 fn same_as<S, P>(row: &[f64], stepper: Result<Stepper<S, P>, SetupError>, tolerance: f64)
 where
     S: liestep::mechanics::Effect<Scalar = f64, Group = SO3>,
@@ -212,7 +212,7 @@ where
     assert!((row[7] - energy).abs() <= tolerance * energy.abs(), "{energy}");
 }
 
-/// By (3.13) bit for bit. Of other steps a file's scene, which could have a rotor, is solved in another order.
+/// Rows of (3.13) agree to the bit. Files of other kinetic terms solve their steps in another order of operations.
 #[test]
 fn kinetic_terms_and_methods() {
     let J = Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0)).unwrap();
@@ -232,7 +232,7 @@ fn kinetic_terms_and_methods() {
     same_as(&collocated, Stepper::collocated::<2>(body + gravity, h), 1e-13);
 }
 
-/// Each kinetic term by its name has the order of its own, and errors of its own, where nothing acts on the body.
+/// Each kinetic term has its order for a free body, and errors of its own.
 #[test]
 fn kinetic_terms_have_their_orders() {
     let velocity = |body: &str, run: &str| {
@@ -243,7 +243,7 @@ fn kinetic_terms_have_their_orders() {
         let row = rows(&folder("orders"), &text).pop().unwrap();
         Vector3::new(row[1], row[2], row[3])
     };
-    // The motion of a free body is one flow of a splitting.
+    // A splitting moves a free body by its exact flow.
     let exact = velocity("", "step = 0.1\nmethod = { splitting = \"Strang\" }");
     let mut errors = Vec::new();
     for (name, order) in
@@ -257,7 +257,7 @@ fn kinetic_terms_have_their_orders() {
     }
 }
 
-/// A ball that rolls on: its tilt passes 60° at π/6, 5π/6, 7π/6, … half seconds, between the steps.
+/// A body that turns at a constant rate: its tilt passes 60° at π/6, 5π/6, 7π/6, … half seconds, between the steps.
 #[test]
 fn events() {
     let folder = folder("events");
@@ -323,7 +323,7 @@ fn table_of(path: &Path) -> Vec<Vec<f64>> {
     table(&fs::read_to_string(path).unwrap())
 }
 
-/// A point of a sweep is the file with its values.
+/// A point of a sweep agrees with the file with its values.
 #[test]
 fn sweeps() {
     let folder = folder("sweeps");
@@ -339,7 +339,7 @@ fn sweeps() {
     let alone = self::rows(&folder, &TOP.replace("\"1 kg\"", "1.5").replace("1e-3", "0.002")).pop().unwrap();
     assert_eq!(row[2..17], alone[..]);
 
-    // Points that stop have a row without numbers.
+    // Points whose run stops have a row without numbers.
     let faster = "[sweep]\nstart.velocity = [[0, 0, 1], [0, 0, 1000]]\n[run]";
     fs::write(folder.join("faster.toml"), TOP.replace("[run]", faster)).unwrap();
     let output = called(&folder, &["sweep", "faster.toml", "--out", "."]);
@@ -351,7 +351,7 @@ fn sweeps() {
     assert_eq!(table.lines().nth(2).unwrap(), format!("0 0 1000{}", ",".repeat(17)));
 }
 
-/// What a file asks for is what a program that asks the same gets, bit for bit.
+/// A file with an accuracy agrees with a program with the same accuracy, to the bit.
 #[test]
 fn a_file_may_ask_for_an_accuracy() {
     let text = TOP.replace("step = \"10 ms\"", "accuracy = 1e-7").replace("[drag]\nc = 1e-3\n", "");
@@ -367,7 +367,7 @@ fn a_file_may_ask_for_an_accuracy() {
     assert_eq!(last[1..4], *stepper.velocity(&state).as_slice());
 }
 
-/// The rates of Euler's angles and the body velocity that they make are those of the same motion.
+/// The rates of Euler angles and the angular velocity agree in their motion.
 #[test]
 fn rates_of_euler_angles() {
     let angles = Vector3::new(0.3, 0.8, -0.5);
@@ -387,7 +387,7 @@ fn rates_of_euler_angles() {
     assert!((axis - at(0.0) * Vector3::z()).norm() < 1e-14, "{axis}");
 }
 
-/// A stream of Arrow beside a table: the same run, which may have both.
+/// A stream of Arrow and a table of the same run agree; a run may write both.
 #[test]
 fn a_run_as_a_stream_of_arrow() {
     let folder = folder("a_run_as_a_stream_of_arrow");
@@ -397,7 +397,7 @@ fn a_run_as_a_stream_of_arrow() {
     assert!(!csv.contains("top.arrow") && both.contains("top.arrows "), "{both}");
     let [one, other] = ["one", "both"].map(|out| fs::read(folder.join(out).join("top.csv")).unwrap());
     assert!(one == other);
-    // 201 rows of twelve doubles and the time, little-endian and column by column in one block.
+    // The stream has 201 rows of twelve doubles and the time, little-endian, column by column in one block.
     let stream = fs::read(folder.join("both/top.arrows")).unwrap();
     let rows = table(&String::from_utf8(one).unwrap());
     for column in 0..rows[0].len() {
@@ -406,7 +406,7 @@ fn a_run_as_a_stream_of_arrow() {
     }
 }
 
-/// The top with a number of steps and a row of each hundredth, by a program that gets no more memory than this.
+/// Runs the top for a number of steps, with a row every hundredth of the run and bounded memory.
 #[cfg(target_os = "linux")]
 fn long_run(steps: u64) {
     let folder = folder("long_run");
@@ -421,7 +421,7 @@ fn long_run(steps: u64) {
     fs::remove_dir_all(&folder).unwrap();
 }
 
-/// In 50 MB, pictures and all.
+/// Runs in 50 MB, with pictures.
 #[test]
 #[cfg(target_os = "linux")]
 fn memory_does_not_grow_with_a_run() {

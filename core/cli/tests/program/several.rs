@@ -1,4 +1,4 @@
-//! Files of several bodies: what programs do, to the bit; springs, loops, and mistakes with their places.
+//! Files of several bodies: they agree with programs to the bit; springs, loops, and mistakes with their places.
 
 use std::fs;
 
@@ -56,7 +56,7 @@ columns = ["position", "quaternion", "velocity", "moving", "energy", "gap"]
 every = 1
 "#;
 
-/// A body of a file and its weight: of the three kinetic terms one has the factor one, the others zero.
+/// A body of a file with its weight. One of the three kinetic terms has the factor one, the others zero.
 #[liestep::lagrangian(
     group(F = SO3, d = R3),
     advected(x = d.seen_from(space)),
@@ -89,7 +89,7 @@ fn system(text: &str) -> System {
     }
 }
 
-/// The rest of the system that a file's bodies are stepped in changes no bit.
+/// Padding bodies change no bit of a file's bodies.
 #[test]
 fn a_file_is_what_a_program_makes() {
     let folder = folder("held");
@@ -144,7 +144,8 @@ fn free(name: &str, position: [f64; 3], rest: &str) -> String {
     )
 }
 
-/// Two bodies on a spring oscillate as half a kick, a drift and half a kick do: `sin(θ/2) = ω h/2` of each step's phase.
+/// Two bodies on a spring oscillate like half a kick, a drift and half a kick: `sin(θ/2) = ω h/2` for each step's
+/// phase.
 #[test]
 fn bodies_on_a_spring() {
     let still = "start.velocity = [0, 0, 0]";
@@ -160,7 +161,7 @@ fn bodies_on_a_spring() {
     }
     assert_eq!(run_of.steps(), 200);
 
-    // Away from their centres they turn each other, a third one hangs on a joint, and all momentum is kept.
+    // Eccentric springs turn the bodies, a third one hangs on a joint, and all momentum is conserved.
     let bodies = free("a", [0.0; 3], TURNING) + &free("b", [0.9, 0.0, 0.1], still) + &free("c", [0.9, 0.6, 0.1], still);
     let springs = "[[spring]]\nbodies = [\"a\", \"b\"]\nat = [[0.2, 0.1, 0], [-0.1, 0, 0.2]]\nk = 30\nlength = 0.3\n\
                    [[spring]]\nbodies = [\"c\", \"a\"]\nat = [[0, 0.1, 0], [0, 0, 0.2]]\nk = 5\nlength = 0\n";
@@ -174,7 +175,7 @@ fn bodies_on_a_spring() {
     println!("momenta {moved:?}, energy {} within {off:e}", first.energy);
     assert!(moved.iter().all(|&moved| moved < 1e-12) && off < 1e-3 * first.energy, "{moved:?} {off:e}");
     assert!((last.bodies[0].position - first.bodies[0].position).norm() > 0.1 && last.gap < 1e-14);
-    // A spring to space holds what it is tied to.
+    // A spring to space: the body oscillates about the anchor.
     let tied = "[[spring]]\nbodies = [\"space\", \"a\"]\nat = [[0, 0, 1], [0, 0, 0]]\nk = 30\nlength = 0\n";
     let body = free("a", [0.0; 3], still);
     let run_of = system(&format!("title = \"tied\"\n{body}{tied}{run}")).run().unwrap();
@@ -183,15 +184,15 @@ fn bodies_on_a_spring() {
     assert!((last.bodies[0].position.z - (1.0 - (200.0 * phase).cos())).abs() < 1e-12);
 }
 
-/// What a run has of a body.
+/// The bits of a body's state.
 fn bits(body: &BodySample) -> Vec<u64> {
     let attitude = body.attitude.as_matrix().as_slice();
     let vectors = [&body.position, &body.velocity, &body.moving].map(nalgebra::Matrix::as_slice);
     [attitude, &body.quaternion[..], &vectors.concat()[..]].concat().into_iter().map(f64::to_bits).collect()
 }
 
-/// Whatever the size of the system that a file's bodies are stepped in, what rests in it changes no bit, and stays where it
-/// is: beside bodies on a spring and beside joined ones.
+/// Resting bodies change no bit of the others, whatever the size of the system, and stay where they are: beside bodies
+/// on a spring and beside joined ones.
 #[test]
 fn bodies_that_rest_change_nothing() {
     let still = "start.velocity = [0, 0, 0]";
@@ -212,7 +213,7 @@ fn bodies_that_rest_change_nothing() {
             assert_eq!(run.samples().len(), 201);
             for (sample, expected) in run.samples().iter().zip(runs[0].samples()) {
                 let all = sample.bodies.len();
-                // What is behind the bodies of the file has no energy and no momentum either.
+                // Padding bodies have no energy and no momentum.
                 let of_all = |sample: &Sample| {
                     let momenta = [sample.momentum, sample.angular_momentum];
                     (sample.energy.to_bits(), sample.gap.to_bits(), momenta)
@@ -229,7 +230,7 @@ fn bodies_that_rest_change_nothing() {
     }
 }
 
-/// Four rods between two pivots: joints that close a loop are found, whatever their order.
+/// Four rods between two pivots: joints that close a loop are detected in any order.
 #[test]
 fn a_loop() {
     let rods = (0..4).map(|k| {
@@ -295,7 +296,7 @@ fn mistakes_have_places() {
     }
 }
 
-/// A body may be called as a column is, unless both are written.
+/// A body may have the name of a column, unless both are written.
 #[test]
 fn columns_have_names_of_their_own() {
     let text = HELD.replace("50 cm/s", "0.5 m/s").replace("\"lower\"", "\"momentum\"");
@@ -310,7 +311,7 @@ fn columns_have_names_of_their_own() {
     assert_eq!(mistake.to_string(), message);
 }
 
-/// What is of one body is refused with a place, or a way out.
+/// Keys for one body are refused with a place or with advice.
 #[test]
 fn what_files_of_several_bodies_are_not_for() {
     let folder = folder("several");
@@ -320,7 +321,7 @@ fn what_files_of_several_bodies_are_not_for() {
     let one = "held.toml:7:1: the file has several bodies";
     refused(&["sweep", "held.toml"], 1, one);
     refused(&["ensemble", "held.toml"], 1, one);
-    // A page plays one body: there is the rest.
+    // A page plays one body; the other results are written.
     let output = called(&folder, &["run", "top.toml", "held.toml", "--html", "--out", "pages"]);
     let note = "note: a page plays one body, and held.toml has several: there is none of it\n";
     assert!(output.status.success() && String::from_utf8(output.stderr).unwrap().ends_with(note));
@@ -334,13 +335,13 @@ fn what_files_of_several_bodies_are_not_for() {
     assert!(parts.iter().all(|part| derivation.contains(part)) && !derivation.contains("without gravity"));
     let free = system(&format!("title = \"free\"\n{}[run]\nstep = 0.1\nduration = 1\n", free("a", [0.0; 3], TURNING)));
     assert!(free.derivation().contains("without gravity") && !free.derivation().contains("joints"));
-    // Beside one of one body.
+    // Files of several bodies and of one.
     let output = simulate(&folder, &["held.toml", "top.toml"]);
     assert!(output.status.success() && folder.join("top.csv").exists());
     assert!(fs::read_to_string(folder.join("held.svg")).unwrap().contains("Ways of the centres of mass"));
 }
 
-/// The ways of bodies are seen in the plane of their motion, and what stays where it is has room around it.
+/// Paths are drawn in the plane of the motion, and a constant coordinate has a finite range.
 #[test]
 fn the_plane_of_the_motion() {
     let readme = fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../README.md")).unwrap();

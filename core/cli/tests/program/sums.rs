@@ -1,4 +1,4 @@
-//! Random sums in files: no order of tables and no name of a parameter changes a motion.
+//! Random sums in files: neither the order of tables nor the names of parameters change a motion.
 
 use std::fmt::Write as _;
 
@@ -35,7 +35,7 @@ impl Random {
     }
 }
 
-/// An effect of the library with numbers of its own.
+/// An effect of the library with random numbers.
 fn effect(name: usize, random: &mut Random) -> String {
     let (one, other) = (random.vector(), random.vector());
     match name {
@@ -52,7 +52,7 @@ fn effect(name: usize, random: &mut Random) -> String {
     }
 }
 
-/// A body, with or without a text of its own.
+/// A body of the library, or a Lagrangian of the file's own.
 fn body(own: bool, names: [&str; 3]) -> String {
     let [m, g, rho] = names;
     if own {
@@ -65,7 +65,7 @@ fn body(own: bool, names: [&str; 3]) -> String {
     }
 }
 
-/// A force with parameters of these names, and names of `let` that a renamed one would be caught by.
+/// A force with parameters of these names. It has names of `let` that could clash with renamed parameters.
 fn force(names: [&str; 3]) -> String {
     let [m, g, rho] = names;
     format!(
@@ -74,7 +74,7 @@ fn force(names: [&str; 3]) -> String {
     )
 }
 
-/// What there is after a few steps.
+/// The state after a few steps.
 fn end(parts: &[String]) -> Sample {
     let mut text = "title = \"sum\"\n".to_owned();
     for part in parts {
@@ -85,8 +85,8 @@ fn end(parts: &[String]) -> Sample {
     run.samples().last().unwrap().clone()
 }
 
-/// Random sums: the tables in two other orders, to the bit; and an own force whose parameters are called as others are,
-/// beside one whose names are its own, to rounding.
+/// Random sums agree to the bit in two other orders of their tables. A force whose parameters share their names with
+/// others agrees to rounding with one whose names are unique.
 fn sums(count: usize) {
     const RUN: &str =
         "[start]\neuler = [0.3, 0.5, 0.1]\nvelocity = [0.4, 0.9, 1.7]\n[run]\nstep = 0.02\nduration = 0.1\n";
@@ -94,7 +94,7 @@ fn sums(count: usize) {
     for number in 0..count {
         let (own, has_force) = (random.below(3) == 0, random.below(2) == 0);
         let mut parts = vec![body(own, ["m", "g", "rho"]), RUN.to_owned()];
-        // A Lagrangian of its own has all of its terms.
+        // A Lagrangian of the file's own has no other effects.
         let effects = if own { 0 } else { 1 + random.below(4) };
         let names = random.shuffled((0..10).collect());
         parts.extend(names[..effects].iter().map(|name| effect(*name, &mut random)));

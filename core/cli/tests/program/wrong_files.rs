@@ -1,4 +1,4 @@
-//! Scene files and command lines that are wrong: each mistake with its place; and what is printed.
+//! Wrong scene files and command lines: each mistake has its place; and printing.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -7,7 +7,7 @@ use expect_test::expect;
 
 use crate::called::{PROGRAM, TOP, apart, called, folder, mistakes, printed, refused, refuses, rows, simulate};
 
-/// A terminal isn't told to do anything, and the picture stays XML.
+/// Control characters don't reach the terminal, and the picture stays valid XML.
 #[test]
 fn control_characters_are_written_out() {
     let folder = folder("control-characters");
@@ -29,7 +29,7 @@ fn mistakes_have_places() {
     }
 }
 
-/// What is no scene at all, with its place if there is text.
+/// Files that are no scene, with the place of the mistake if there is text.
 #[test]
 fn files_of_another_kind() {
     let folder = folder("kinds");
@@ -69,15 +69,15 @@ fn a_file_without_an_end() {
     );
 }
 
-/// A mark of the byte order is no mistake.
+/// A byte order mark is no mistake.
 #[test]
 fn a_file_with_a_mark_of_the_byte_order() {
     let text = format!("\u{feff}{TOP}");
     assert_eq!(rows(&folder("mark"), &text).len(), 201);
 }
 
-/// Quaternions of any length are brought to length one, and directions of what is one to the digits that are typed. A
-/// direction of another length would be another weight to a Lagrangian and to a program, and is refused.
+/// Quaternions of any length are normalised, and so are directions with a length of one up to the typed digits. Other
+/// directions are refused, as a Lagrangian and a program would give them different weights.
 #[test]
 fn lengths_of_directions() {
     let folder = folder("lengths");
@@ -103,12 +103,12 @@ fn lengths_of_directions() {
         let message = refused(&folder, &up(given));
         let expected = format!("top.toml:10:6: a direction has the length 1, and this {length}: write {better}\n");
         assert_eq!(message, format!("error: {expected}"));
-        // What is advised is taken.
+        // The advised direction is accepted.
         assert_eq!(self::rows(&folder, &up(better)).len(), 201, "{better}");
     }
 }
 
-/// A folder for the pictures that can't be one, no file at all, two of the same name.
+/// Refused command lines: an impossible folder for the pictures, no file, two files of one name.
 #[test]
 fn command_lines() {
     let folder = folder("commands");
@@ -135,7 +135,7 @@ fn command_lines() {
     refused(&["ran"], 2, "unrecognized subcommand 'ran'");
 }
 
-/// What can't be printed or written is a message and an exit code.
+/// A failure to print or to write is a message and an exit code.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_full_disk() {
@@ -154,7 +154,7 @@ fn a_full_disk() {
     assert!(text.starts_with("error: cannot print: No space left on device"), "{text}");
 }
 
-/// Who has read enough isn't told that there was more.
+/// A reader that closes the pipe is no failure.
 #[test]
 fn a_reader_that_goes_away() {
     let mut program =
@@ -164,7 +164,7 @@ fn a_reader_that_goes_away() {
     assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
 }
 
-/// A table that is killed on its way is called another name than one that is whole.
+/// An unfinished table has another name than a finished one.
 #[test]
 fn a_killed_table_has_no_name() {
     let folder = folder("a_killed_table_has_no_name");
@@ -190,7 +190,7 @@ fn what_is_printed() {
         "top.toml: body + gravity + drag, 200 steps of 0.01 s, hΩ = 0.0628 rad\n"
     );
     assert!(!folder.join("out").exists());
-    // All files are looked at.
+    // All files are checked.
     fs::write(folder.join("fast.toml"), TOP.replace("60 rpm", "60000 rpm")).unwrap();
     fs::write(folder.join("wrong.toml"), TOP.replace("[drag]", "[darg]")).unwrap();
     let files = ["check", "wrong.toml", "top.toml", "fast.toml"];
@@ -220,7 +220,7 @@ fn a_duration_is_a_whole_number_of_steps() {
     assert!(printed(&folder, &["check", "top.toml"]).contains("10 steps of 0.0001 s,"));
 }
 
-/// A terminal would obey what a file has in its keys and units, and what a file is called.
+/// Control characters in keys, units and file names don't reach the terminal.
 #[test]
 fn control_characters_in_mistakes_are_written_out() {
     let folder = folder("controls");

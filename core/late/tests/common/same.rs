@@ -1,4 +1,4 @@
-//! Two effects that are to make the same steps.
+//! Comparison of two effects that have to make the same steps.
 
 use liestep::Stepper;
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
@@ -13,7 +13,7 @@ fn bits<E: Entries<f64>>(value: &E) -> Vec<u64> {
     list
 }
 
-/// From a random start both make the same steps to the bit, forwards and backwards. One that fails, fails in both.
+/// Asserts the same steps to the bit from a random start, forwards and backwards, up to a failure that both share.
 pub(crate) fn assert_same<A, B>(compiled: &A, late: &B, seed: u64)
 where
     A: Regular<Scalar = f64, Retraction = CayleyRetraction> + Clone,
@@ -44,11 +44,11 @@ where
         }
         assert_eq!(one.energy(&first).to_bits(), other.energy(&second).to_bits(), "energy");
     }
-    // A random motion may end before; both ends are compared.
+    // A random motion may fail earlier; both ends are compared.
     assert!(made > 100, "only {made} steps of {}", late.derivation());
 }
 
-/// The declaration, read anew and interpreted, makes the steps of the compiled effect.
+/// Asserts that the declaration, read from its text and interpreted, makes the steps of the compiled effect.
 pub(crate) fn assert_as_compiled<E>(compiled: &E, seed: u64)
 where
     E: Regular<Scalar = f64, Retraction = CayleyRetraction> + Clone,

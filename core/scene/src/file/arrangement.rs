@@ -1,26 +1,26 @@
-//! Joints in the order of the library: those of trees, and those that close loops.
+//! Joints in the library's order: joints of trees, and joints that close loops.
 
 use std::array::from_fn;
 
-/// The most bodies of a file: the types of steppers for each number of bodies are compiled.
+/// Most bodies of a file. Each number of bodies has compiled types of steppers.
 pub(crate) const BODIES: usize = 8;
-/// The most joints that close loops.
+/// Most joints that close loops.
 pub(crate) const LOOPS: usize = 4;
 
-/// Joints as the library takes them, by their numbers in the file.
+/// Joints in the library's order, each by its number in the file.
 #[derive(Clone)]
 pub(crate) struct Arrangement {
     pub(crate) tree: Vec<usize>,
     pub(crate) loops: Vec<usize>,
-    /// One body of each tree that no joint connects to space. Nothing holds it there.
+    /// One body of each tree that no joint connects to space; the tree moves freely.
     pub(crate) free: Vec<usize>,
 }
 
 impl Arrangement {
-    /// Of joints between two bodies each, `None` being space. The first joints that lead to a body which none before leads
-    /// to are those of trees, the others close loops; `Err` has the number of the first loop beyond the most.
+    /// Sorts joints, each between two bodies, of which `None` is space. A joint that connects two groups of bodies
+    /// belongs to a tree; a joint within a group closes a loop. `Err` has the number of the first loop beyond the most.
     pub(crate) fn of(joints: impl Iterator<Item = [Option<usize>; 2]>) -> Result<Self, usize> {
-        // Space is behind the last.
+        // Space has the last entry.
         let mut group: [usize; BODIES + 1] = from_fn(|body| body);
         let (mut tree, mut loops) = (Vec::new(), Vec::new());
         for (number, bodies) in joints.enumerate() {

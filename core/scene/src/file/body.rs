@@ -12,16 +12,16 @@ use crate::file::key::refuse;
 use crate::file::quantity;
 use crate::file::quantity::{Triple, short};
 
-/// A body by one of its inertias, and how its kinetic energy is discretised.
+/// A body: one of its inertias, and the discretisation of its kinetic energy.
 #[derive(Clone, Copy)]
 pub(crate) struct Body {
-    /// The inertia as it is written, unless the file has the nonstandard one.
+    /// The inertia as written in the file, or converted from the nonstandard one.
     pub(crate) J: Inertia,
     pub(crate) mass: Distribution,
     pub(crate) kinetic: Kinetic,
 }
 
-/// In principal axes, or in any.
+/// The nonstandard inertia in principal axes, or in any axes.
 #[derive(Clone, Copy)]
 pub(crate) enum Distribution {
     Principal(DiagonalNonstandardInertia),
@@ -42,7 +42,7 @@ pub(crate) enum Kinetic {
 }
 
 impl Kinetic {
-    /// Of the step of a body that is free.
+    /// Order of the free body's step.
     pub(crate) fn order(self) -> u32 {
         match self {
             Self::Rigid | Self::Cayley | Self::Geodesic => 2,
@@ -76,7 +76,7 @@ impl<'de> Deserialize<'de> for Body {
 
 struct BodyTable;
 
-/// By hand, so that a key too many is refused where it stands.
+/// Written by hand, so that a superfluous key is refused at its place.
 impl<'de> Visitor<'de> for BodyTable {
     type Value = Body;
 
@@ -109,7 +109,7 @@ impl<'de> Visitor<'de> for BodyTable {
     }
 }
 
-/// Why no body has these principal moments, in their own numbers.
+/// The reason why no body has these principal moments, with their numbers.
 fn impossible(moments: &Vector3<f64>) -> Option<String> {
     let mut sorted: [f64; 3] = (*moments).into();
     sorted.sort_by(f64::total_cmp);
@@ -123,7 +123,7 @@ fn impossible(moments: &Vector3<f64>) -> Option<String> {
     })
 }
 
-/// Moments of inertia that a body can have.
+/// Principal moments of inertia that satisfy the triangle inequality.
 #[derive(Deserialize)]
 #[serde(try_from = "Triple<quantity::Inertia>")]
 pub(crate) struct Moments {
@@ -141,7 +141,7 @@ impl TryFrom<Triple<quantity::Inertia>> for Moments {
     }
 }
 
-/// Nonstandard moments that a body can have.
+/// Principal nonstandard moments of a possible body.
 #[derive(Deserialize)]
 #[serde(try_from = "Triple<quantity::Inertia>")]
 pub(crate) struct Nonstandard(pub(crate) DiagonalNonstandardInertia);
@@ -154,7 +154,7 @@ impl TryFrom<Triple<quantity::Inertia>> for Nonstandard {
     }
 }
 
-/// The tensor of inertia in any axes, by its rows.
+/// The inertia tensor in any axes, by its rows.
 #[derive(Deserialize)]
 #[serde(try_from = "Vec<Triple<quantity::Inertia>>")]
 pub(crate) struct Full(pub(crate) Inertia);

@@ -1,4 +1,4 @@
-//! What a table of a run has: the table `output`.
+//! Columns of a run's table: the table `output`.
 
 use liestep::recording;
 use nalgebra::Vector3;
@@ -19,12 +19,12 @@ pub struct Column {
     numbers: Numbers,
 }
 
-/// How the numbers of a column are found.
+/// The function that computes the numbers of a column.
 #[derive(Clone, Copy, Debug)]
 enum Numbers {
     OfBody(fn(&BodySample) -> Vec<f64>),
     OfScene(fn(&Sample) -> Vec<f64>),
-    /// Of a state and the first of the run.
+    /// A difference between a state and the first state of the run.
     SinceStart(fn(&Sample, &Sample) -> f64),
 }
 
@@ -90,24 +90,24 @@ impl Column {
         Self { key, names, unit, numbers }
     }
 
-    /// What it is called in a file.
+    /// The column's key in a file.
     #[must_use]
     pub const fn key(self) -> &'static str {
         self.key
     }
 
-    /// What its numbers are called in the first row of a table, those of a body behind the body's name.
+    /// The names of the column's numbers in the head of a table. With several bodies, the body's name precedes them.
     #[must_use]
     pub const fn names(self) -> &'static [&'static str] {
         self.names
     }
 
-    /// Whether it is measured from the start of a run, and so isn't known of a state alone.
+    /// Whether the column measures from the start of a run, so that a state alone doesn't determine it.
     pub(crate) const fn is_since_the_start(self) -> bool {
         matches!(self.numbers, SinceStart(_))
     }
 
-    /// The numbers of columns in a state of a run with this first one.
+    /// The numbers of these columns in the state `now` of a run that started from `first`.
     pub(crate) fn row(columns: &[Self], first: &Sample, now: &Sample) -> Vec<f64> {
         let numbers = |column: &Self| match column.numbers {
             OfBody(numbers) => now.bodies.iter().flat_map(numbers).collect(),
@@ -117,7 +117,7 @@ impl Column {
         columns.iter().flat_map(numbers).collect()
     }
 
-    /// The columns of a table, each with the number of its body; the name of one body that is alone is empty.
+    /// The columns of a table, each with the number of its body. A single body has an empty name.
     pub(crate) fn listed(columns: &[Self], bodies: &[&str]) -> Vec<(recording::Column, Option<usize>)> {
         let mut all = Vec::new();
         for column in columns {
@@ -142,12 +142,12 @@ fn three(vector: Vector3<f64>) -> Vec<f64> {
     vec![vector.x, vector.y, vector.z]
 }
 
-/// What a table has.
+/// The table `output` of a file.
 #[derive(Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Output {
     columns: Option<Spanned<Vec<Spanned<String>>>>,
-    /// In steps from row to row; as many as a picture has room for, where it isn't given.
+    /// Steps from row to row. By default there are as many rows as a picture has samples.
     every: Option<Stride>,
 }
 
@@ -168,16 +168,16 @@ impl TryFrom<i64> for Stride {
     }
 }
 
-/// More samples than a picture has room for.
+/// Most samples of a picture, more than it can resolve.
 const SAMPLES_IN_A_PICTURE: u64 = 20_000;
 
-/// Steps from one sample of a picture to the next, in a run of this many steps.
+/// Steps from one sample of a picture to the next in a run of this many steps.
 pub(crate) fn picture_stride(steps: u64) -> u64 {
     steps.div_ceil(SAMPLES_IN_A_PICTURE).max(1)
 }
 
 impl Output {
-    /// Its columns among those that there are, or these if it names none.
+    /// The columns by their keys among the known ones, or the default.
     pub(crate) fn columns(&self, known: &[Column], default: &[&str]) -> Result<Vec<Column>, Wrong> {
         let find = |key: &str| known.iter().find(|column| column.key == key).copied();
         let Some(keys) = &self.columns else { return Ok(default.iter().filter_map(|key| find(key)).collect()) };
@@ -196,7 +196,7 @@ impl Output {
         Ok(columns)
     }
 
-    /// Steps from one row to the next, in a run of this many steps.
+    /// Steps from one row to the next in a run of this many steps.
     pub(crate) fn stride(&self, steps: u64) -> u64 {
         self.every.map_or_else(|| picture_stride(steps), |every| every.0)
     }

@@ -1,4 +1,4 @@
-//! The scene of a document: what its tables say, then what doesn't go together.
+//! The scene of a document: its tables are read first, then checked against each other.
 
 use std::path::Path;
 
@@ -62,7 +62,7 @@ const METHODS: &str = "is no method of a scene: `method` is \"step\", or a table
                        `{ splitting = \"Nyström 6-4\" }`, `{ processed = \"processed 3-6 a\" }` or `{ collocation = 8 }`; \
                        a Runge–Kutta method wouldn't keep what the motion conserves";
 
-/// A method by a name alone, but for the one that there is.
+/// The name of a method without a table, other than `step`.
 fn named_method(document: &Document<'_>) -> Option<String> {
     let name = document.get_ref().get("run")?.get_ref().get("method")?.get_ref().as_str()?;
     (name != "step").then(|| name.to_owned())
@@ -72,13 +72,13 @@ fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
     document.get_ref().get(table).and_then(|table| table.get_ref().get(key)).is_some()
 }
 
-/// Keys that don't go together, though each could stand there.
+/// Conflicts between keys that are valid by themselves.
 fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let of = [of_pace, of_orbit, of_density, of_method];
     of.iter().find_map(|odds| odds(document, file))
 }
 
-/// Beside a step or an accuracy.
+/// Conflicts with a step or an accuracy.
 fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     if has(document, "run", "step") && has(document, "run", "accuracy") {
@@ -110,7 +110,7 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     None
 }
 
-/// Beside what turns with an orbit.
+/// Conflicts with effects that vary along an orbit.
 fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     if let Some(gradient) = &file.gravity_gradient {
@@ -150,7 +150,7 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     None
 }
 
-/// Beside a density.
+/// Conflicts with a density of steps.
 fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let has_a_pace = file.lagrangian.as_ref().is_some_and(|own| own.has_a_pace);
     let turns = file.turning().next().is_some();
@@ -164,7 +164,7 @@ fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     Some((span(document, &["run", "density"]), format!("a `density` is around {what}")))
 }
 
-/// Beside a method, that of a Lagrangian first.
+/// Conflicts with a method; a Lagrangian's come first.
 fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     let method = &file.run.method;

@@ -1,4 +1,4 @@
-//! What an ensemble draws: the table `ensemble`, read.
+//! Random draws of an ensemble: reading the table `ensemble`.
 
 use std::borrow::Cow;
 use std::ops::{Range, RangeInclusive};
@@ -12,35 +12,36 @@ use crate::file::mistake::Wrong;
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Keys, dotted, ends};
 
-/// The scenes of an ensemble: each draws its values, by what the one who runs it draws with.
+/// The scenes of an ensemble. Each draws its values with the caller's random numbers.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct SceneEnsemble {
-    /// How many members there are.
+    /// Number of members.
     pub members: u64,
-    /// What they are drawn with.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// The number of steps from one row of a member to the next; if it isn't given the columns are kept at the end only.
+    /// Steps from one row of a member to the next. Without it, only the columns at the end are recorded.
     pub every: Option<u64>,
-    /// The number of members that are made at a time and kept in one file, and at most lost where a run is ended.
+    /// Number of members that are simulated together and stored in one file, and at most lost when a run is
+    /// interrupted.
     pub chunk: Option<u64>,
-    /// The whole file, by which one ensemble is told from another.
+    /// The text of the whole file, which identifies the ensemble.
     pub text: String,
     pub(crate) axes: Vec<Axis>,
     pub(crate) path: PathBuf,
-    /// The tables of which something is drawn, and a member that has the others; without such a member, all tables.
+    /// The tables with drawn values, to be put into the member `like`. Without such a member, all tables of the file.
     pub(crate) tables: DeTable<'static>,
     pub(crate) like: Option<Box<SceneFile>>,
 }
 
-/// What a value is drawn from; in the unit that the file has.
+/// The distribution of a value, in the file's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spread {
-    /// Each value from the first to below the second as likely.
+    /// The uniform distribution on a half-open interval.
     Uniform {
-        /// The least.
+        /// Lower bound, included.
         from: f64,
-        /// The end.
+        /// Upper bound, excluded.
         to: f64,
     },
     /// The normal distribution.
@@ -52,11 +53,11 @@ pub enum Spread {
     },
 }
 
-/// A key, and what of its value is drawn.
+/// A key, and the distribution of its value.
 #[derive(Clone)]
 pub(crate) struct Axis {
     pub(crate) keys: Keys,
-    /// One where the value is none of a list.
+    /// Components of a list, or a single one for any other value.
     pub(crate) components: Vec<Component>,
     pub(crate) is_list: bool,
     pub(crate) span: Range<usize>,
@@ -65,7 +66,7 @@ pub(crate) struct Axis {
 #[derive(Clone)]
 pub(crate) enum Component {
     Draw(Draw),
-    /// Where in the text its value stands.
+    /// The place in the text of a value that isn't drawn.
     Fixed(Range<usize>),
 }
 
@@ -74,23 +75,23 @@ pub(crate) struct Draw {
     name: String,
     spread: Spread,
     pub(crate) unit: String,
-    /// That of its first number.
+    /// Place of the first number.
     span: Range<usize>,
 }
 
-/// More couldn't be counted by the steps they take.
+/// Most members: the total number of their steps has to be countable.
 const MOST_MEMBERS: u64 = 1_000_000_000;
 
 pub(crate) const DRAW: &str = "a value is drawn by `{ from = …, to = … }`, each between as likely, or by \
                     `{ mean = …, deviation = … }`, normally: two numbers, or texts with the same unit";
 const PARTS: &str = "`ensemble` has `members`, may have `seed`, `every` and `chunk`, and says in `draw` what is drawn";
-/// The tables of which something may be drawn.
+/// The tables whose values can be drawn.
 fn drawable() -> impl Iterator<Item = &'static str> {
     ["body", "lagrangian", "force"].into_iter().chain(EFFECTS.iter().map(|effect| effect.key)).chain(["start"])
 }
 
 impl SceneEnsemble {
-    /// What is drawn, by its names, and from what.
+    /// Names and distributions of the drawn values.
     pub fn draws(&self) -> impl Iterator<Item = (&str, Spread)> {
         let components = self.axes.iter().flat_map(|axis| &axis.components);
         components.filter_map(|component| match component {
@@ -101,7 +102,7 @@ impl SceneEnsemble {
 }
 
 impl Component {
-    /// As it could have been written, with the next of these numbers where one is drawn.
+    /// The component's text in a file. A drawn value takes the next of these numbers.
     pub(crate) fn text(&self, file: &str, numbers: &mut impl Iterator<Item = f64>) -> String {
         match self {
             Self::Draw(Draw { unit, .. }) => {
@@ -120,7 +121,7 @@ impl Component {
     }
 }
 
-/// The table of a file, read, without a member.
+/// The table's entries, read without making a member.
 pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, Wrong> {
     let DeValue::Table(inner) = table.get_ref() else { return Err((table.span(), "`ensemble` is a table".to_owned())) };
     let (path, text) = (path.to_owned(), text.to_owned());
@@ -165,12 +166,12 @@ pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -
     if ensemble.axes.is_empty() {
         return Err((table.span(), format!("`ensemble` draws nothing; {PARTS}")));
     }
-    // The order of a table's keys is none of its own.
+    // Tables are sorted by keys: the file's order is restored.
     ensemble.axes.sort_by_key(|axis| axis.span.start);
     Ok(ensemble)
 }
 
-/// A key with what of its value is drawn.
+/// A key with the distribution of its value.
 fn axis((keys, value): (Keys, &Spanned<DeValue<'_>>)) -> Result<Axis, Wrong> {
     if let Some(key) = keys.first().filter(|key| !drawable().any(|name| name == key.get_ref())) {
         let drawn: Vec<_> = drawable().map(|name| format!("`{name}`")).collect();
@@ -197,12 +198,12 @@ fn axis((keys, value): (Keys, &Spanned<DeValue<'_>>)) -> Result<Axis, Wrong> {
     Ok(Axis { keys, components, is_list, span: value.span() })
 }
 
-/// Whether a table says no distribution, but has tables that do.
+/// Whether a table has no distribution of its own, but tables that may have.
 fn leads_on(table: &DeTable<'_>) -> bool {
     !table.is_empty() && !DISTRIBUTIONS.as_flattened().iter().any(|end| table.contains_key(*end))
 }
 
-/// The two numbers of each distribution.
+/// The two keys of each distribution.
 const DISTRIBUTIONS: [[&str; 2]; 2] = [["from", "to"], ["mean", "deviation"]];
 
 fn drawn(table: &DeTable<'_>, span: &Range<usize>, name: String) -> Result<Draw, Wrong> {
@@ -210,7 +211,7 @@ fn drawn(table: &DeTable<'_>, span: &Range<usize>, name: String) -> Result<Draw,
     let mut entries: Vec<_> = table.iter().collect();
     entries.sort_by_key(|(key, _)| key.span().start);
     let (first, _) = *entries.first().ok_or_else(|| wrong(span.clone()))?;
-    // The first key says which it is.
+    // The first key selects the distribution.
     let is_of = |kind: &[&str; 2], key: &Spanned<Cow<'_, str>>| kind.contains(&key.get_ref().as_ref());
     let kind = DISTRIBUTIONS.iter().find(|kind| is_of(kind, first)).ok_or_else(|| wrong(first.span()))?;
     if let Some((key, _)) = entries.iter().find(|(key, _)| !is_of(kind, key)) {
@@ -226,7 +227,7 @@ fn drawn(table: &DeTable<'_>, span: &Range<usize>, name: String) -> Result<Draw,
         return Err(wrong(behind));
     }
     let spread = if *kind == DISTRIBUTIONS[0] {
-        // Their difference is to be a number, too.
+        // The width of the interval has to be finite, too.
         if !(second > first && (second - first).is_finite()) {
             return Err((behind, "a range goes from a number to a larger one".to_owned()));
         }

@@ -1,4 +1,4 @@
-//! The list of the effects, with their tables in a file: what is made of all effects is made of this list.
+//! The list of the effects with their tables in a file. Every other list of effects is generated from it.
 
 use liestep::effects::{
     AirDrag, Dipole, Drag, Gravity, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque,
@@ -14,20 +14,20 @@ use crate::file::quantity::{
     Momentum, Positive, Scalar, Stiffness, Triple,
 };
 
-/// An effect by its parameters in a file.
+/// An effect's parameters in a file.
 pub(crate) trait Table {
-    /// The numbers of the effect on the body with this inertia, with what it is at a time, s.
+    /// The effect's parameters for a body of this inertia, at a time, s.
     fn numbers(&self, J: &Inertia, time: f64) -> Vec<f64>;
 
-    /// Along which orbit it is another at each time, and by which parameter.
+    /// The orbit along which the effect varies, and the parameter that has it.
     fn orbit(&self) -> Option<(&'static str, &Orbit)>;
 
-    /// As [`Parameter::put`](crate::file::orbit::Parameter::put), for that of this key.
+    /// Sets a number in this key and component, see [`Parameter::put`](crate::file::orbit::Parameter::put).
     fn put(&mut self, place: (&str, usize), number: f64, unit: &str) -> bool;
 }
 
-/// Shows the list to a macro, behind what that is given: of each effect the table in a file, its keys, and how these make
-/// the effect.
+/// Passes the list to a macro, after the macro's own arguments. An entry has the effect's table, its keys with their
+/// types, and the effect's value for them.
 macro_rules! effects {
     ($then:ident $($given:tt)*) => {
         $then! {
@@ -74,21 +74,21 @@ macro_rules! effects {
 }
 pub(crate) use effects;
 
-/// What is known of an effect without a file.
+/// The facts about an effect that don't depend on a file.
 pub(crate) struct Listed {
     /// Its table in a file.
     pub(crate) key: &'static str,
-    /// What is derived of it, and its own text.
+    /// The effect's derivation, and the text of its declaration.
     pub(crate) derived: (&'static str, &'static str),
 }
 
 impl Listed {
-    /// Its name in words, or in a command.
+    /// The name with this separator between its words.
     pub(crate) fn name(&self, between: &str) -> String {
         self.key.replace('_', between)
     }
 
-    /// Whether it is a force, and no Lagrangian.
+    /// Whether it is a force rather than a Lagrangian.
     pub(crate) fn does_work(&self) -> bool {
         self.derived.1.starts_with("#[force")
     }
@@ -126,7 +126,7 @@ macro_rules! tables {
             }
         )+
 
-        /// All of them, in the order of the list.
+        /// All effects, in the order of the list.
         pub(crate) const EFFECTS: &[Listed] = &[$(Listed {
             key: stringify!($name),
             derived: (<$effect as Effect>::DERIVATION, <$effect as Effect>::DECLARATION),

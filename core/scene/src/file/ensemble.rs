@@ -1,4 +1,4 @@
-//! The scenes of an ensemble, and what doesn't go with one.
+//! The scenes of an ensemble, and conflicts with the file's other tables.
 
 use std::path::Path;
 
@@ -13,18 +13,18 @@ use crate::file::scene::SceneFile;
 use crate::file::tables::{Document, set, span};
 
 impl SceneEnsemble {
-    /// The scene of a member, with numbers that are drawn by their names: `gravity.m`, and of components
-    /// `start.velocity.1` to `start.velocity.3`.
+    /// The scene of a member. `draw` returns a number for each name: `gravity.m`, or `start.velocity.1` to
+    /// `start.velocity.3` for components.
     ///
     /// # Errors
     ///
-    /// A [`Mistake`] where there is no such scene, as of a mass below zero.
+    /// A [`Mistake`] where the drawn numbers make no valid scene, such as a negative mass.
     pub fn member(&self, draw: &mut dyn FnMut(&str, Spread) -> f64) -> Result<SceneFile, Mistake> {
         let numbers: Vec<f64> = self.draws().map(|(name, spread)| draw(name, spread)).collect();
         self.numbered(&numbers).map_or_else(|| self.written(&numbers), Ok)
     }
 
-    /// With these numbers in the place of those of another member; none where a text has to be read.
+    /// The scene of another member with these numbers in it; none where a value can only be read from a text.
     fn numbered(&self, numbers: &[f64]) -> Option<SceneFile> {
         let (mut numbers, mut scene) = (numbers.iter(), SceneFile::clone(self.like.as_ref()?));
         for Axis { keys, components, .. } in &self.axes {
@@ -39,7 +39,7 @@ impl SceneEnsemble {
         Some(scene)
     }
 
-    /// With these numbers as they could have been written.
+    /// The scene read from tables in which these numbers are written.
     fn written(&self, numbers: &[f64]) -> Result<SceneFile, Mistake> {
         let located = |(span, message): Wrong| Mistake::at(&self.path, place_of(&self.text, &span), message);
         let mut numbers = numbers.iter().copied();
@@ -71,7 +71,7 @@ impl SceneEnsemble {
     }
 }
 
-/// The ensemble that a table says; `scene` has what isn't drawn.
+/// The ensemble of a table; `file` is the scene without draws.
 pub(crate) fn read(
     (path, text): (&Path, &str),
     document: &Document<'_>,
@@ -117,7 +117,7 @@ pub(crate) fn read(
             let message = "effects of the file share this orbit, and a draw would change it for one of them alone";
             return Err(located((last.span(), message.to_owned())));
         }
-        // What a file doesn't have isn't there because of a number that is drawn.
+        // A table that the file lacks can't be added by a draw.
         let mut here = Some(document.get_ref());
         for key in tables {
             let name = key.get_ref();
@@ -130,16 +130,16 @@ pub(crate) fn read(
             here = inner.and_then(|value| value.get_ref().as_table());
         }
     }
-    // The text is parsed once, and kept as long as the program runs.
+    // The tables borrow the text, so it is parsed once and leaked.
     let tables = DeTable::parse(Box::leak(text.into())).map_err(|error| Mistake::of_toml(path, text, &error))?;
     let axes = &ensemble.axes;
     let is_drawn = |name: &str| axes.iter().any(|axis| axis.keys.first().is_some_and(|key| key.get_ref() == name));
-    // Of these more than their own table is read anew.
+    // A drawn Lagrangian, force or orbit affects other tables, too: all of them are read anew.
     let all = is_drawn("lagrangian") || is_drawn("force") || file.run.steps_per_orbit.is_some();
     let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
     ensemble.tables = tables.into_inner().into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
     ensemble.like = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));
-    // What is wrong with a unit or a key is wrong with every member.
+    // Wrong units and keys are found by reading two members.
     for end in [true, false] {
         let value = |(_, spread)| match spread {
             Spread::Uniform { from: value, .. } if end => value,

@@ -4,7 +4,7 @@ use serde::Deserialize;
 
 use crate::file::quantity::{Angle, Energy, Number, Positive, Rate, Scalar};
 
-/// What is looked for along a run: that a quantity passes a value.
+/// An event to be detected along a run: a quantity passes a value.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(try_from = "EventTable")]
 pub(crate) struct Event {
@@ -14,7 +14,7 @@ pub(crate) struct Event {
     pub(crate) stops: bool,
 }
 
-/// A quantity and the value, in SI units.
+/// A quantity and its value, in SI units.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Quantity {
     Tilt(f64),
@@ -73,7 +73,7 @@ impl TryFrom<EventTable> for Event {
             return Err("an event has one of `tilt`, `speed`, `energy`, `velocity_1`, `velocity_2`, `velocity_3`, \
                         `axis_1`, `axis_2`, `axis_3`");
         };
-        // It is the name of a column.
+        // An event's name is the name of a column.
         let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);
         if table.name.is_empty() || !table.name.chars().all(is_plain) {
             return Err("the `name` of an event has letters, digits, - and _ only");

@@ -1,4 +1,4 @@
-//! A key that may not stand where it does: the error has its place, not that of its table.
+//! Errors about a key that has no place in its table. They point to the key, not to the table.
 
 use std::convert::Infallible;
 
@@ -14,7 +14,7 @@ impl<'de> DeserializeSeed<'de> for Refusal {
     }
 }
 
-/// Refuses the key that was read last, in the place of its value.
+/// Refuses the key that was read last, with the place of its value.
 pub(crate) fn refuse<'de, T, M: MapAccess<'de>>(table: &mut M, why: &'static str) -> Result<T, M::Error> {
     match table.next_value_seed(Refusal(why))? {}
 }

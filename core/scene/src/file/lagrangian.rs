@@ -1,4 +1,4 @@
-//! The table of a Lagrangian or a force that a user declares: its text, derived, with the numbers of its parameters.
+//! The table of a Lagrangian or a force of the file's own: its text is derived, and its parameters have numbers.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -18,16 +18,16 @@ use crate::file::mistake::{Wrong, advised};
 use crate::file::quantity::{Any, Scalar};
 use crate::file::tables::Document;
 
-/// Programs are machine code where the feature asks for it, and else interpreted: the bits are the same.
+/// The backend of programs: machine code with the feature `machine`, an interpreter without. Results agree to the bit.
 #[cfg(feature = "machine")]
 pub(crate) type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
 pub(crate) type Backend = liestep_late::Interpreter;
 
-/// What a Lagrangian advects; where it is less, the others are zero.
+/// The advected vectors of a Lagrangian, up to four; unused ones are zero.
 type Seen = (Vector3<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
-/// The energy of a motion with a pace, and three of them.
+/// The energy of a motion with a pace, and up to three advected vectors.
 type SeenWithEnergy = (Given<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
 /// A Lagrangian or a force on SO(3), with the numbers of its parameters.
@@ -39,17 +39,17 @@ pub(crate) struct Declared {
 }
 
 impl Declared {
-    /// As an effect with this kinetic part.
+    /// The effect with this kinetic part.
     pub(crate) fn late<K: KineticPart>(&self) -> Result<Late<SO3, Seen, K, Backend>, LateError> {
         Late::of(self.declaration)?.with_all(&self.numbers)
     }
 
-    /// With the energy of its motion.
+    /// The effect with a pace, which advects its energy, too.
     pub(crate) fn paced(&self) -> Result<Late<SO3, SeenWithEnergy, WithEitherKinetic, Backend>, LateError> {
         Late::of(self.declaration)?.with_all(&self.numbers)
     }
 
-    /// The inertia of the limit where the body is not turned.
+    /// The inertia of the continuous limit at the identity attitude.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
         if self.has_a_pace {
             return self.paced().ok().map(|late| late.inertia(&late.advected()));
@@ -63,7 +63,7 @@ const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may hav
 const KEYS_OF_FORCES: &str = "a force has `work`; it may have `advected`, as in `advected = { w = \"up\" }`, and has a \
                               key for each parameter";
 
-/// The field of the energy of a motion with a pace.
+/// Field name for the energy of a motion with a pace.
 const ENERGY: &str = "E_0_of_the_start";
 
 /// A parameter: its type in the declaration, and its numbers.
@@ -73,13 +73,13 @@ struct Parameter {
     numbers: Vec<f64>,
 }
 
-/// By then the table has been taken: the key is there for the message that lists all keys.
-#[allow(clippy::unnecessary_wraps)] // serde asks for it
+/// Deserialises nothing, as [`take`] removes the table first. Messages that list all keys need the key.
+#[allow(clippy::unnecessary_wraps)] // serde requires a `Result`
 pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Option<Declared>, D::Error> {
     Ok(None)
 }
 
-/// Takes the table of a Lagrangian or a force out of a document, if there is one.
+/// Removes the table of a Lagrangian or a force from a document, and reads it.
 pub(crate) fn take(document: &mut Document<'_>, role: Role) -> Result<Option<Declared>, Wrong> {
     let name = if role == Role::Force { "force" } else { "lagrangian" };
     let Some((key, table)) = document.get_mut().remove_entry(name) else { return Ok(None) };
@@ -92,7 +92,7 @@ pub(crate) fn take(document: &mut Document<'_>, role: Role) -> Result<Option<Dec
     read(table, &key.span(), role).map(Some)
 }
 
-/// What stands before the expression and before what is advected, the expression, and its place.
+/// The declaration's arguments before the expression and before the advected vectors; the expression, and its place.
 type Expression = ([String; 2], (String, Range<usize>));
 
 fn expression(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Expression, Wrong> {
@@ -113,7 +113,7 @@ fn expression(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<E
         return Ok((["work".to_owned(), String::new()], work));
     }
     let [l_d, l, velocity, discretise, pace] = ["l_d", "l", "velocity", "discretise", "pace"].map(text);
-    // The energy is first, so that the vectors behind it may be as many as there are.
+    // The energy comes first, so that any number of advected vectors can follow.
     let pace = pace?.map(|(pace, _)| format!("given(E_0 = {ENERGY}), pace = {{ {pace} }}, ")).unwrap_or_default();
     match (l_d?, l?, discretise?) {
         (Some(l_d), None, None) => Ok((["l_d".to_owned(), pace], l_d)),
@@ -133,7 +133,7 @@ fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declare
         _ => &["group", "l_d", "l", "velocity", "discretise", "pace", "advected"],
     };
     let mut parameters: Vec<_> = table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref())).collect();
-    // A table's own order is that of the alphabet, and rounding is that of the file.
+    // The reader sorts keys by the alphabet; the file's order determines the roundings.
     parameters.sort_by_key(|(key, _)| key.span().start);
     let mut parameters =
         parameters.into_iter().map(|(key, value)| parameter(key.get_ref(), value)).collect::<Result<Vec<_>, _>>()?;
@@ -152,7 +152,7 @@ fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declare
         let Some(first) = mistakes.into_iter().next() else { return (place.clone(), KEYS.to_owned()) };
         let of_key = || first.message.split('`').nth(1).and_then(|name| Some(table.get_key_value(name)?.0.span()));
         let span = placed(&expression, &at, (first.line, first.column)).or_else(of_key);
-        // What stands before the expression is of the table.
+        // A mistake in the first line, before the expression, concerns the table.
         let elsewhere = if first.line < 2 { place } else { &at };
         (span.unwrap_or_else(|| elsewhere.clone()), first.message)
     };
@@ -167,7 +167,7 @@ fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declare
     fits.map_err(wrong).map(|()| declared)
 }
 
-/// `advected(w = up), `, if something is.
+/// The argument `advected(w = up), `, empty without advected vectors.
 fn advected(table: &DeTable<'_>) -> Result<String, Wrong> {
     let Some(value) = table.get("advected") else { return Ok(String::new()) };
     let all = BTreeMap::<String, Spanned<String>>::deserialize(ValueDeserializer::from(value.clone()))
@@ -178,20 +178,19 @@ fn advected(table: &DeTable<'_>) -> Result<String, Wrong> {
     Ok(format!("advected({}), ", pairs.join(", ")))
 }
 
-/// The place in the file of a line and a column of the declared text, the second line of which is the first of the
-/// expression.
+/// The place in the file of a line and a column of the declared text, whose second line is the expression's first.
 fn placed(expression: &str, at: &Range<usize>, (line, column): (usize, usize)) -> Option<Range<usize>> {
     let lines = || expression.split_inclusive('\n');
     let own = line.checked_sub(2)?;
     let (before, within): (usize, &str) = (lines().take(own).map(str::len).sum(), lines().nth(own)?);
     let within: usize = within.chars().take(column.checked_sub(1)?).map(char::len_utf8).sum();
-    // Behind the quotation marks, of which there are as many at the end.
+    // The opening quotation marks are as long as the closing ones.
     let marks = at.len().checked_sub(expression.len())?.div_ceil(2);
     let start = at.start + marks + before + within;
     (start < at.end).then_some(start..at.end)
 }
 
-/// A parameter by what its value looks like.
+/// A parameter, with the type that its value suggests.
 fn parameter(name: &str, value: &Spanned<DeValue<'_>>) -> Result<Parameter, Wrong> {
     let source = || ValueDeserializer::from(value.clone());
     let wrong = |error: Error| in_value(value, &error);
@@ -200,7 +199,7 @@ fn parameter(name: &str, value: &Spanned<DeValue<'_>>) -> Result<Parameter, Wron
         DeValue::Table(_) => {
             let inertia =
                 OfInertia::deserialize(source()).map_err(wrong)?.inertia().map_err(|why| (value.span(), why))?;
-            // As the letters of the field have it.
+            // A name with the suffix `_d` has the nonstandard inertia.
             let is_nonstandard = name.ends_with("_d");
             let matrix = if is_nonstandard { *inertia.to_nonstandard().as_matrix() } else { *inertia.as_matrix() };
             (if is_nonstandard { "NonstandardInertia" } else { "Inertia" }, matrix.as_slice().to_vec())

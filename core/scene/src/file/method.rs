@@ -3,7 +3,7 @@
 use liestep::methods::{CompositionScheme, ProcessedScheme, SplittingScheme};
 use serde::Deserialize;
 
-/// How a scene is stepped, by the names of [`liestep::methods`].
+/// The stepping method, by the names of [`liestep::methods`].
 #[derive(Clone, Copy, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Method {
@@ -11,11 +11,11 @@ pub(crate) enum Method {
     #[default]
     Step,
     Composition(Named<CompositionScheme>),
-    /// With the exact motion of the free body.
+    /// A splitting with the exact motion of the free body.
     Splitting(Named<SplittingScheme>),
-    /// With the exact motion of the free body, inside of a processor.
+    /// A splitting with the exact motion of the free body, with a processor.
     Processed(Named<ProcessedScheme>),
-    /// By its number of stages.
+    /// A collocation, by its number of stages.
     Collocation(Stages),
 }
 
@@ -35,7 +35,7 @@ impl Method {
         }
     }
 
-    /// In words, behind an article.
+    /// The kind of method in words, with an article.
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Step => "a step",
@@ -82,7 +82,7 @@ macro_rules! schemes {
 
 schemes! { CompositionScheme SplittingScheme ProcessedScheme }
 
-/// Those that fill the machine's vectors.
+/// The numbers of stages that fill the machine's vectors.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(try_from = "i64")]
 pub(crate) enum Stages {

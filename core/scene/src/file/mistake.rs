@@ -8,9 +8,9 @@ use std::string::FromUtf8Error;
 
 use liestep_derivation::suggestion;
 
-/// What is wrong with a scene file or with its run, and where.
+/// A mistake in a scene file or a failure of its run, with its place.
 ///
-/// It is shown as `file:line:column: message`, with control characters [written out](visible).
+/// It is displayed as `file:line:column: message`, with control characters [written out](visible).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mistake {
     path: PathBuf,
@@ -20,15 +20,15 @@ pub struct Mistake {
     kind: Kind,
 }
 
-/// What is wrong, and where in the text.
+/// The place of a mistake in the text, and its message.
 pub(crate) type Wrong = (Range<usize>, String);
 
-/// Whose fault it is.
+/// The subject of a mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The file can't be read, or says nothing that could be run.
+    /// The file can't be read, or describes no scene.
     File,
-    /// The run of a scene that could be: a parameter out of range, a step that is too long.
+    /// The run of a valid scene failed: a parameter is out of range, or a step is too long.
     Run,
     /// The table of a run can't be written.
     Table,
@@ -44,7 +44,7 @@ impl Mistake {
         Self { path: path.to_owned(), place: None, message, kind: Kind::File }
     }
 
-    /// At the first byte that belongs to no character.
+    /// A mistake at the first byte that belongs to no character.
     pub(crate) fn not_text(path: &Path, error: &FromUtf8Error) -> Self {
         let (before, _) = error.as_bytes().split_at(error.utf8_error().valid_up_to());
         let before = String::from_utf8_lossy(before);
@@ -68,26 +68,26 @@ impl Mistake {
         Self { path: path.to_owned(), place: None, message, kind: Kind::Table }
     }
 
-    /// That a file has no table of this name.
+    /// The mistake that a file lacks the table of this name.
     #[must_use]
     pub fn no_table(path: &Path, name: &str) -> Self {
         Self::at(path, (1, 1), format!("has no table `{name}`"))
     }
 
-    /// The line and the column in characters, from one; none for a file that has no text.
+    /// Line and column in characters, from one; none for a file without a text.
     #[must_use]
     pub fn place(&self) -> Option<(usize, usize)> {
         self.place
     }
 
-    /// Whether the file is wrong or its run.
+    /// Whether the file is wrong, its run, or the table of the run.
     #[must_use]
     pub fn kind(&self) -> Kind {
         self.kind
     }
 }
 
-/// Words of other programs, each with a name that is expected where it has a meaning, and advice.
+/// Words of other programs, each with the name that it stands for here, and advice for where that name is expected.
 const OTHER_WORDS: [(&str, &str, &str); 15] = [
     ("hinge", "pin", "a hinge is a `pin`"),
     ("revolute", "pin", "a revolute joint is a `pin`"),
@@ -106,7 +106,7 @@ const OTHER_WORDS: [(&str, &str, &str); 15] = [
     ("inertia", "J", "a tensor of inertia is `J`, principal moments are `moments`"),
 ];
 
-/// A message of the reader's with what could have been meant.
+/// A message of the reader with a suggestion for an unknown name.
 pub(crate) fn advised(message: &str) -> String {
     // `unknown field `x`, expected one of `y`, `z``
     let mut names = message.split('`').skip(1).step_by(2);
@@ -132,12 +132,12 @@ pub(crate) fn place(text: &str, offset: usize) -> (usize, usize) {
     (before.matches('\n').count() + 1, line.chars().count() + 1)
 }
 
-/// The place of the beginning of a stretch.
+/// Line and column of the beginning of a range.
 pub(crate) fn place_of(text: &str, span: &Range<usize>) -> (usize, usize) {
     place(text, span.start)
 }
 
-/// A text with its control characters written out, which a terminal would obey; tabs and ends of lines stay.
+/// A text with its control characters written out, as a terminal would obey them. Tabs and line feeds stay.
 #[must_use]
 pub fn visible(text: &str) -> String {
     let mut all = String::with_capacity(text.len());

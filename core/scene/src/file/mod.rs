@@ -1,4 +1,4 @@
-//! What files say: the tables of a document as types, and what is wrong in them with its place.
+//! Scene files: the tables of a document as types, and the mistakes in them with their places.
 
 pub(crate) mod arrangement;
 pub(crate) mod body;

@@ -1,4 +1,4 @@
-//! Orbits, and what turns with them: values that are fixed in space, or a function of time.
+//! Orbits, and parameters that vary along them: vectors that are fixed in space, or functions of time.
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -16,16 +16,16 @@ use crate::file::quantity::{
     Angle, Direction, Duration, FluxDensity, Number, Positive, Quantity, Rate, Scalar, Triple, in_si, short,
 };
 
-/// A closed orbit about a far mass, by Kepler's laws.
+/// A closed orbit about a distant mass, by Kepler's laws.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(try_from = "OrbitTable")]
 pub(crate) struct Orbit {
     /// s.
     period: f64,
     eccentricity: f64,
-    /// The mean anomaly at the start, rad.
+    /// Mean anomaly at the start, rad.
     phase: f64,
-    /// In space, of length one: to where the orbit is nearest to the mass, and a quarter turn on.
+    /// Unit vectors in space: towards pericentre, and a quarter turn further along the orbit.
     axes: [Vector3<f64>; 2],
 }
 
@@ -33,11 +33,11 @@ pub(crate) struct Orbit {
 #[serde(deny_unknown_fields)]
 struct OrbitTable {
     period: Positive<Duration>,
-    /// The motion is right-handed about it.
+    /// Axis of the motion, which is right-handed about it.
     normal: Direction,
     eccentricity: Option<Scalar<Number>>,
     phase: Option<Scalar<Angle>>,
-    /// Its part across the normal counts.
+    /// Direction of pericentre, projected across the normal.
     periapsis: Option<Direction>,
 }
 
@@ -62,16 +62,16 @@ impl TryFrom<OrbitTable> for Orbit {
 }
 
 impl Orbit {
-    /// The steps along it, so many a round, and their mean, s.
+    /// The clock with this many steps per orbit, and their mean length, s.
     pub(crate) fn clock(&self, steps: NonZeroU32) -> Result<(Clock, f64), SetupError> {
         let clock = Clock::orbit_from(self.phase, self.eccentricity, self.period, steps.get())?;
         Ok((clock, self.period / f64::from(steps.get())))
     }
 
-    /// What it has by its keys, in the digits of a person.
+    /// The orbit's keys and values, rounded for display.
     pub(crate) fn said(&self) -> [(&'static str, String); 5] {
         let [near, on] = &self.axes;
-        // Without the roundings of a zero, and its sign.
+        // A zero without its rounding error and its sign.
         let direction = |v: Vector3<f64>| format!("{:?}", v.map(|x| (x * 1e9).round() / 1e9 + 0.0).data.0[0]);
         [
             ("period", short(self.period) + " s"),
@@ -87,10 +87,10 @@ impl Orbit {
         TAU / self.period
     }
 
-    /// Where the body is at a time, s, as seen from the mass: in space, in semi-major axes.
+    /// The body's position relative to the mass at a time, s: in space, in semi-major axes.
     pub(crate) fn place(&self, time: f64) -> Vector3<f64> {
         let e = self.eccentricity;
-        // Whole turns first, which would take digits from the angle.
+        // Whole turns are removed first, as they would cost digits of the angle.
         let anomaly = eccentric_anomaly(self.phase + TAU * ((time % self.period) / self.period), e);
         let (sin, cos) = anomaly.sin_cos();
         self.axes[0] * (cos - e) + self.axes[1] * ((1.0 - e) * (1.0 + e)).sqrt() * sin
@@ -99,14 +99,14 @@ impl Orbit {
 
 /// Solves Kepler's equation `E − e sin E = M` to rounding.
 ///
-/// From `M` to half a turn the left side is convex, so that Newton's iteration comes down to its root from any point above.
+/// From `M` to half a turn the left side is convex: Newton's iteration decreases to the root from any point above.
 fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
     let mean = mean - TAU * (mean / TAU).round();
     let wanted = mean.abs();
     let mut anomaly = (wanted + e).min(PI);
     loop {
         let next = anomaly - (anomaly - e * anomaly.sin() - wanted) / (1.0 - e * anomaly.cos());
-        // It rises by roundings only; without a slope there is nothing to divide by.
+        // The iterate increases by rounding errors only. At a zero slope the division has no result.
         if next >= anomaly || next.is_nan() {
             return anomaly.copysign(mean);
         }
@@ -114,7 +114,7 @@ fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
     }
 }
 
-/// Three numbers that are the same at all times, or a table of what makes them another vector each time.
+/// A vector that is constant, or a table that determines it as a function of time.
 #[derive(Clone, Copy)]
 pub(crate) enum Turning<F, T> {
     Fixed(F),
@@ -134,18 +134,18 @@ pub(crate) struct OnOrbit {
     pub(crate) orbit: Orbit,
 }
 
-/// The field of a magnetic dipole in the middle of the mass, fixed in space, along the orbit.
+/// The field along the orbit of a magnetic dipole in the middle of the mass, fixed in space.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DipoleField {
     orbit: Orbit,
-    /// Above the dipole's equator, a semi-major axis away.
+    /// The field above the dipole's equator, one semi-major axis away.
     equator: Triple<FluxDensity>,
 }
 
 impl Turning<Direction, OnOrbit> {
-    /// The direction of the mass at a time, s, of the length `(a/r)^{3/2}`, with which a gravity gradient that is quadratic
-    /// in it falls with the third power of the distance.
+    /// The direction of the mass at a time, s, with the length `(a/r)^{3/2}`: a gravity gradient, quadratic in it,
+    /// falls with the third power of the distance.
     pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
         match self {
             Self::Fixed(direction) => direction.0,
@@ -159,8 +159,8 @@ impl Turning<Direction, OnOrbit> {
 }
 
 impl Turning<Triple<Rate>, OnOrbit> {
-    /// The angular velocity at a time, s, in space, rad/s: along an orbit that of the direction of the mass, which by Kepler's
-    /// second law is `n √(1 − e²) (a/r)²`.
+    /// The angular velocity at a time, s, in space, rad/s. Along an orbit it is that of the direction of the mass,
+    /// `n √(1 − e²) (a/r)²` by Kepler's second law.
     pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
         match self {
             Self::Fixed(rate) => rate.value,
@@ -174,7 +174,7 @@ impl Turning<Triple<Rate>, OnOrbit> {
 }
 
 impl Turning<Triple<FluxDensity>, DipoleField> {
-    /// The flux density at a time, s, in space, T: `(a/r)³ (B − 3 (B·r̂) r̂)` of that at the equator, `B`.
+    /// The flux density at a time, s, in space, T: `(a/r)³ (B − 3 (B·r̂) r̂)`, with `B` at the equator.
     pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
         match self {
             Self::Fixed(field) => field.value,
@@ -189,19 +189,19 @@ impl Turning<Triple<FluxDensity>, DipoleField> {
 
 /// A parameter of an effect.
 pub(crate) trait Parameter {
-    /// Along which orbit it is another at each time.
+    /// The orbit along which the parameter varies.
     fn orbit(&self) -> Option<&Orbit> {
         None
     }
 
-    /// Puts a number with a unit into a component, numbered from zero. `false` where nothing is put and a text with this
-    /// number has to be read: it might be refused, or say more than a number.
+    /// Sets a component, numbered from zero, to a number with a unit. `false` where nothing is set and the number has
+    /// to be read from a text: it may be refused, or the value may be more than a number.
     fn put(&mut self, _component: usize, _number: f64, _unit: &str) -> bool {
         false
     }
 }
 
-/// Puts a value into a place, where there are both; says whether there are.
+/// Sets a place to a value, where both exist; returns whether they do.
 pub(crate) fn put(place: Option<&mut f64>, value: Option<f64>) -> bool {
     place.zip(value).map(|(place, value)| *place = value).is_some()
 }

@@ -1,11 +1,11 @@
-//! What to draw: the table `picture`.
+//! Pictures of a run: the table `picture`.
 
 use nalgebra::Vector3;
 use serde::Deserialize;
 
 use crate::file::quantity::Direction;
 
-/// What to draw of one body.
+/// The picture of one body.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct SpherePicture {
@@ -13,34 +13,34 @@ pub(crate) struct SpherePicture {
     pub(crate) path: Trace,
     /// The body axis that `path = "axis"` and the panel `tilt` follow.
     pub(crate) axis: Direction,
-    /// From above to below.
+    /// Panels from top to bottom.
     pub(crate) panels: Vec<Curve>,
 }
 
-/// What moves on the sphere.
+/// The point whose path is drawn on the sphere.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Trace {
     /// An axis of the body, in space.
     Axis,
-    /// The direction of the angular momentum, in the body.
+    /// The direction of the angular momentum, body frame.
     Momentum,
-    /// The direction of the velocity, in the body.
+    /// The direction of the angular velocity, body frame.
     Velocity,
 }
 
-/// What is drawn over time.
+/// The curve of a panel, over time.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Curve {
-    /// The body velocity.
+    /// The angular velocity, body frame.
     Rates,
-    /// The angle of the axis to the third axis of space.
+    /// The angle between the axis and the third axis of space.
     Tilt,
     Energy,
     /// The deviation of the energy from its start, in powers of ten.
     EnergyError,
-    /// In space.
+    /// The angular momentum, in space.
     Momentum,
     /// The deviation of the vertical momentum from its start, in powers of ten.
     VerticalMomentumError,
@@ -55,15 +55,15 @@ impl Default for SpherePicture {
     }
 }
 
-/// What to draw of several bodies.
+/// The picture of several bodies.
 #[derive(Clone, Deserialize, Default)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct PlanePicture {
-    /// The plane of the motion, if it isn't given.
+    /// The plane of projection; by default the plane of the widest motion.
     pub(crate) plane: Option<Plane>,
 }
 
-/// What the paths of the bodies are seen in.
+/// The plane of projection of the bodies' paths.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Plane {

@@ -9,11 +9,11 @@ use serde::de::{Deserializer, Error, Visitor};
 
 /// A physical quantity.
 pub(crate) trait Quantity {
-    /// Its name with an article.
+    /// The name with an article.
     const NAME: &'static str;
-    /// Its units, each with its size in the first, which is that of SI.
+    /// Units, each with its size in the first, the SI unit.
     const UNITS: &'static [(&'static str, f64)];
-    /// The largest number without a unit: beyond it another unit than that of SI is likelier to be meant.
+    /// The largest number without a unit. A larger one was probably meant in another unit.
     const LARGEST_BARE: f64 = f64::INFINITY;
 }
 
@@ -29,7 +29,7 @@ macro_rules! quantities {
         }
     )+
 
-        /// A quantity of any kind: that of a parameter that a file names itself.
+        /// A quantity of any kind, for the parameters of a file's own declarations.
         #[derive(Clone, Copy)]
         pub(crate) struct Any;
 
@@ -41,7 +41,7 @@ macro_rules! quantities {
 }
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
-/// The largest angle without a unit: a whole turn as it is typed, rad.
+/// The largest angle without a unit: a whole turn as typed, rad.
 const TURN: f64 = 6.3;
 
 quantities! {
@@ -66,13 +66,13 @@ quantities! {
     Torque: "a torque" in "N m" 1.0, "mN m" 1e-3, "µN m" 1e-6;
 }
 
-/// A number in this unit in those of SI, as one that is read; none where it isn't finite or has no such unit.
+/// A number with a unit, converted to SI units; none where it isn't finite or the unit is unknown.
 pub(crate) fn in_si<Q: Quantity>(number: f64, unit: &str) -> Option<f64> {
     let size = if unit.is_empty() { 1.0 } else { size::<Q>(unit)? };
     Some(number * size).filter(|number| number.is_finite())
 }
 
-/// A unit in that of SI.
+/// The size of a unit in the SI unit.
 fn size<Q: Quantity>(unit: &str) -> Option<f64> {
     Q::UNITS.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size)
 }
@@ -98,7 +98,7 @@ pub(crate) struct Triple<Q> {
     quantity: PhantomData<Q>,
 }
 
-/// Three numbers of length one to the digits that are typed, brought to it.
+/// A unit vector, normalised from typed digits.
 #[derive(Clone, Copy)]
 pub(crate) struct Direction(pub(crate) Vector3<f64>);
 
@@ -129,7 +129,7 @@ impl<'de, Q: Quantity> Deserialize<'de> for Triple<Q> {
 impl<'de> Deserialize<'de> for Direction {
     fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
         let vector = Triple::<Number>::deserialize(source)?.value;
-        // By the largest first, as squares may be too large or too small for a number.
+        // Divided by the largest component first, as squares may overflow or underflow.
         let unit = (vector / vector.amax()).try_normalize(0.5).filter(|unit| unit.iter().all(|x| x.is_finite()));
         let unit = unit.ok_or_else(|| D::Error::custom("a direction can't be zero"))?;
         let length = vector.dot(&unit);
@@ -148,7 +148,7 @@ fn finite<E: Error>(value: f64) -> Result<f64, E> {
     if value.is_finite() { Ok(value) } else { Err(E::custom("must be finite")) }
 }
 
-/// Largest difference of a direction's length from one: parts with three digits leave that.
+/// Largest deviation of a direction's length from one, which parts with three digits may have.
 const OFF_UNIT: f64 = 1e-3;
 
 struct NumberOrText<Q>(PhantomData<Q>);
@@ -172,7 +172,7 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
         Err(E::custom(format!("{} has no unit: write {}", short(value), units.join(" or "))))
     }
 
-    #[allow(clippy::cast_precision_loss)] // as if it had been written with a point
+    #[allow(clippy::cast_precision_loss)] // equal to the number with a decimal point
     fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
         self.visit_f64(value as f64)
     }
@@ -185,7 +185,7 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
         let written = unit.trim().replace("^2", "²").replace("^3", "³");
         match size::<Q>(&written) {
             Some(size) => finite(value * size),
-            // Where the quantity is any, they would be all that there are.
+            // A quantity of any kind has too many units to list.
             None if Q::UNITS.len() > 8 => {
                 Err(E::custom(format!("`{unit}` isn't a unit that is known here: take one of SI, or leave it out")))
             }
@@ -197,14 +197,14 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
     }
 }
 
-/// A number with three digits.
+/// A number rounded to three digits.
 pub(crate) fn round(value: f64) -> String {
     short(format!("{value:.2e}").parse().unwrap_or(value))
 }
 
-/// A number as a person would write it, without the rounding errors of the last digits.
+/// A number as a person would write it, without the rounding errors of its last digits.
 pub(crate) fn short(value: f64) -> String {
-    // Debug has an exponent where there would be many zeros, and a point where there needn't be one.
+    // Debug formatting uses an exponent where there would be many zeros, and adds a point to whole numbers.
     let text = format!("{:?}", format!("{value:.9e}").parse::<f64>().unwrap_or(value));
     text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
 }

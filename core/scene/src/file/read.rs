@@ -1,4 +1,4 @@
-//! Reading: a file's text, its tables, and then those that make several scenes of one.
+//! Reading a file: its text, its tables, and then the tables that make several scenes of one.
 
 use std::path::Path;
 
@@ -12,12 +12,12 @@ use crate::file::tables::{Document, span};
 use crate::file::text::text;
 use crate::file::{ensemble, sweep};
 
-/// What a file has: one body, or several.
+/// The scene of a file: one body, or several.
 #[derive(Clone)]
 pub enum Scene {
-    /// With a table `[body]`.
+    /// One body, from a table `[body]`.
     Body(Box<SceneFile>),
-    /// With tables `[[body]]`.
+    /// Several bodies, from tables `[[body]]`.
     System(Box<System>),
 }
 
@@ -32,7 +32,7 @@ impl Scene {
         Self::parse(path, &text(path)?)
     }
 
-    /// The scene that a text describes; `path` is for messages.
+    /// Parses the scene of a text; `path` appears in messages.
     ///
     /// # Errors
     ///
@@ -48,7 +48,7 @@ impl Scene {
     }
 }
 
-/// Reads the file of a scene with one body; [`Scene::read`] reads that of several, too.
+/// Reads the file of a scene with one body; [`Scene::read`] also reads files of several bodies.
 ///
 /// # Errors
 ///
@@ -58,7 +58,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Mistake> {
     parse(path, &text(path)?)
 }
 
-/// The scene that a text describes; `path` is for messages.
+/// Parses the scene of a text; `path` appears in messages.
 ///
 /// # Errors
 ///
@@ -85,7 +85,7 @@ pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<SceneFile, Mistake> {
     Ok(file)
 }
 
-/// Whether its bodies are listed.
+/// Whether the document lists several bodies.
 fn has_several(document: &DeTable<'_>) -> bool {
     document.get("body").is_some_and(|body| matches!(body.get_ref(), DeValue::Array(_)))
 }

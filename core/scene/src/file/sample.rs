@@ -8,17 +8,18 @@ use nalgebra::{Matrix3, Vector3};
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Sample {
-    /// Since the start, s.
+    /// Time since the start, s.
     pub time: f64,
-    /// In the order of the file.
+    /// States of the bodies, in the order of the file.
     pub bodies: Vec<BodySample>,
-    /// Of the continuous limit, J.
+    /// Energy of the continuous limit, J.
     pub energy: f64,
-    /// Of all bodies, in space, kg m/s; zero of a body that turns about a fixed point.
+    /// Total momentum in space, kg m/s; zero for a body that turns about a fixed point.
     pub momentum: Vector3<f64>,
-    /// Of all bodies, about the origin, in space, kg m²/s.
+    /// Total angular momentum about the origin, in space, kg m²/s.
     pub angular_momentum: Vector3<f64>,
-    /// Of the joint that is open farthest, m; of pins with the cosines of their axes. Zero where there are no joints.
+    /// Constraint violation of the joint where it is largest, m; for pins together with the cosines of their axes. Zero
+    /// without joints.
     pub gap: f64,
 }
 
@@ -28,20 +29,20 @@ pub struct Sample {
 pub struct BodySample {
     /// Body to space.
     pub attitude: SO3,
-    /// The attitude as the unit quaternion `w, x, y, z`: of the two the one nearer to the sample before.
+    /// The attitude as the unit quaternion `w, x, y, z`, with the sign that is nearer to the previous sample.
     pub quaternion: [f64; 4],
-    /// Body frame, rad/s.
+    /// Angular velocity, body frame, rad/s.
     pub velocity: Vector3<f64>,
     /// The angular momentum, body frame, kg m²/s.
     pub momentum: Vector3<f64>,
-    /// Of the centre of mass in space, m; zero of a body that turns about a fixed point.
+    /// Position of the centre of mass in space, m; zero for a body that turns about a fixed point.
     pub position: Vector3<f64>,
-    /// The velocity of the centre of mass in space, m/s; zero of a body that turns about a fixed point.
+    /// Velocity of the centre of mass in space, m/s; zero for a body that turns about a fixed point.
     pub moving: Vector3<f64>,
 }
 
 impl Sample {
-    /// Takes the quaternions that are nearer to those of an earlier sample.
+    /// Chooses the signs of the quaternions that are nearer to an earlier sample.
     pub(crate) fn follow(&mut self, before: &Self) {
         for (body, before) in self.bodies.iter_mut().zip(&before.bodies) {
             body.quaternion = before.quaternion;
@@ -51,7 +52,7 @@ impl Sample {
 }
 
 impl BodySample {
-    /// The turning part; the centre of mass rests at the origin.
+    /// The state of a body that only turns; its centre of mass rests at the origin.
     pub(crate) fn turning(attitude: SO3, velocity: Vector3<f64>, momentum: Vector3<f64>) -> Self {
         let mut quaternion = [0.0; 4];
         attitude.write_numbers(&mut quaternion);

@@ -20,7 +20,7 @@ use crate::file::schedule::{Pace, Schedule};
 use crate::file::start::Start;
 use crate::file::text::title;
 
-/// The type, with a field and a row of its page for each effect.
+/// Defines the type, with a field and a row of its documentation for each effect.
 macro_rules! scene_file {
     (
         { $($fields:tt)+ }
@@ -45,8 +45,9 @@ macro_rules! scene_file {
                 EFFECTS.iter().zip(tables).filter_map(|(effect, table)| Some((effect, table?)))
             }
 
-            /// Puts a number with a unit into a component of what these keys lead to, as
-            /// [`Parameter::put`](crate::file::orbit::Parameter::put): of an effect, or of the velocity of the start.
+            /// Sets a component of the value of these keys to a number with a unit, see
+            /// [`Parameter::put`](crate::file::orbit::Parameter::put). The keys belong to an effect, or to the velocity
+            /// of the start.
             pub(crate) fn put(&mut self, [name, key]: [&str; 2], component: usize, number: f64, unit: &str) -> bool {
                 match name {
                     "start" if key == "velocity" => {
@@ -59,7 +60,7 @@ macro_rules! scene_file {
                 }
             }
 
-            /// Reads the table of the body, the start or an effect anew; others are left as they are.
+            /// Replaces the body, the start or an effect by one read from a table; other names are ignored.
             pub(crate) fn set(&mut self, name: &str, table: ValueDeserializer<'_>) -> Result<(), Error> {
                 match name {
                     "body" => self.body = Some(Body::deserialize(table)?),
@@ -76,7 +77,7 @@ macro_rules! scene_file {
 effects! { scene_file
     #[serde(deserialize_with = "title")]
     pub(crate) title: String,
-    /// A body of the library, or a Lagrangian in place of it and of the effects.
+    /// A body of the library; none with a Lagrangian, which replaces it and the effects.
     pub(crate) body: Option<Body>,
     pub(crate) start: Start,
     pub(crate) run: Schedule,
@@ -92,70 +93,70 @@ effects! { scene_file
     pub(crate) force: Option<Declared>,
     #[serde(skip)]
     pub(crate) columns: Vec<Column>,
-    /// Of the whole file: the scenes that a sweep makes have none.
+    /// The sweep of the file; none in the scenes that a sweep generates.
     #[serde(skip)]
     pub(crate) sweep: Option<Sweep>,
-    /// Of the whole file: the scenes that an ensemble draws have none.
+    /// The ensemble of the file; none in the scenes that an ensemble draws.
     #[serde(skip)]
     pub(crate) ensemble: Option<SceneEnsemble>,
     #[serde(skip)]
     pub(crate) origin: Origin,
 }
 
-/// Where a scene is from, for messages about its run.
+/// The origin of a scene, for messages about its run.
 #[derive(Clone, Default)]
 pub(crate) struct Origin {
     pub(crate) path: PathBuf,
     pub(crate) places: Places,
 }
 
-/// Lines and columns, from one.
+/// Lines and columns of keys, from one.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Places {
     pub(crate) body: (usize, usize),
     pub(crate) start: (usize, usize),
-    /// Of the step or the accuracy.
+    /// Place of the step or the accuracy.
     pub(crate) pace: (usize, usize),
     pub(crate) method: (usize, usize),
     pub(crate) spring: (usize, usize),
 }
 
 impl SceneFile {
-    /// What the scene is called.
+    /// The title of the scene.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// The scenes that the file makes of one, if it has a table `sweep`.
+    /// The sweep over scenes, if the file has a table `sweep`.
     #[must_use]
     pub fn sweep(&self) -> Option<&Sweep> {
         self.sweep.as_ref()
     }
 
-    /// The names of the events that are looked for.
+    /// The names of the events to be detected.
     pub fn events(&self) -> impl Iterator<Item = &str> {
         self.event.iter().map(|event| event.name.as_str())
     }
 
-    /// What a table of the run has behind the time.
+    /// The columns that follow the time in a table of the run.
     #[must_use]
     pub fn columns(&self) -> &[Column] {
         &self.columns
     }
 
-    /// The columns of a table behind the time, one for each number.
+    /// The columns that follow the time in a table, one for each number.
     pub(crate) fn listed(&self) -> Vec<recording::Column> {
         Column::listed(&self.columns, &[""]).into_iter().map(|(column, _)| column).collect()
     }
 
-    /// The scenes that are drawn, if the file has a table `ensemble`.
+    /// The ensemble of scenes, if the file has a table `ensemble`.
     #[must_use]
     pub fn ensemble(&self) -> Option<&SceneEnsemble> {
         self.ensemble.as_ref()
     }
 
-    /// Whether the step is chosen for an accuracy, by trial runs.
+    /// Whether the step is chosen by trial runs, for an accuracy.
     #[must_use]
     pub fn asks_for_accuracy(&self) -> bool {
         matches!(self.run.pace, Pace::Accuracy(_))
@@ -167,7 +168,7 @@ impl SceneFile {
         is_varied || self.lagrangian.as_ref().is_some_and(|own| own.has_a_pace)
     }
 
-    /// How many steps the scene asks for; none where they are chosen for an accuracy.
+    /// The number of steps; none where they are chosen for an accuracy.
     #[must_use]
     pub fn steps(&self) -> Option<u64> {
         match self.run.pace {
@@ -176,7 +177,7 @@ impl SceneFile {
         }
     }
 
-    /// About how far the body turns in an equal step at the start, rad.
+    /// The angle by which the body turns in an equal step at the start, approximately, rad.
     pub(crate) fn turn_of_a_step(&self) -> Option<f64> {
         match self.run.pace {
             Pace::Step { step, .. } if !self.has_steps_of_its_own() => Some(step * self.start.velocity.norm()),
@@ -184,7 +185,7 @@ impl SceneFile {
         }
     }
 
-    /// The sum, and how it is stepped, in words.
+    /// A description of the terms and the steps, in words.
     #[must_use]
     pub fn about(&self) -> String {
         let pace = match self.run.pace {
@@ -200,7 +201,7 @@ impl SceneFile {
         format!("{}, {pace}{turn}{}{}", self.sum(), sweep.unwrap_or_default(), ensemble.unwrap_or_default())
     }
 
-    /// The sum, in words.
+    /// A description of the terms, in words.
     pub(crate) fn sum(&self) -> String {
         let first = if self.lagrangian.is_some() { "a Lagrangian of its own" } else { "body" };
         let effects = self.effects().map(|(effect, _)| effect.name(" "));
@@ -208,13 +209,13 @@ impl SceneFile {
         effects.chain(force).fold(first.to_owned(), |sum, effect| format!("{sum} + {effect}"))
     }
 
-    /// The first force, by its name.
+    /// The name of the first force.
     pub(crate) fn first_force(&self) -> Option<String> {
         let listed = self.effects().find(|(effect, _)| effect.does_work()).map(|(effect, _)| effect.name(" "));
         listed.or_else(|| self.force.as_ref().map(|_| "`force`".to_owned()))
     }
 
-    /// The effects that are others at each time: the keys of their orbits, and these.
+    /// The effects that vary along an orbit: the keys that lead to their orbits, and the orbits.
     pub(crate) fn turning(&self) -> impl Iterator<Item = ([&'static str; 3], &Orbit)> {
         self.effects()
             .filter_map(|(effect, table)| table.orbit().map(|(key, orbit)| ([effect.key, key, "orbit"], orbit)))
@@ -225,24 +226,24 @@ impl SceneFile {
         self.body.map(|body| body.kinetic).unwrap_or_default()
     }
 
-    /// Where the body is not turned; none of a Lagrangian that no body has.
+    /// The inertia at the identity attitude; none for a Lagrangian that isn't of a body.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
         let of_lagrangian = || self.lagrangian.as_ref().and_then(Declared::inertia);
         self.body.map(|body| *body.J.as_matrix()).or_else(of_lagrangian)
     }
 
-    /// Of the scene's own step: other effects are kicks of order two.
+    /// Order of the scene's own step; effects are kicks of second order.
     pub(crate) fn order(&self) -> u32 {
         if self.effects().next().is_none() && self.force.is_none() { self.kinetic().order() } else { 2 }
     }
 }
 
-/// The scenes of a sweep: one for each combination of its values, the last key fastest.
+/// The scenes of a sweep: one for each combination of its values. The last key varies fastest.
 #[derive(Clone)]
 #[non_exhaustive]
 pub struct Sweep {
-    /// What is varied, as `gravity.m`, in the order of the file.
+    /// The varied keys, such as `gravity.m`, in the order of the file.
     pub names: Vec<String>,
-    /// The values of each, as the file has them, and the scene with them.
+    /// Each scene, with the texts of its varied values.
     pub points: Vec<(Vec<String>, SceneFile)>,
 }

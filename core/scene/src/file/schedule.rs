@@ -1,4 +1,4 @@
-//! How long a run is, and by which steps: the table `run`.
+//! Duration, steps and method of a run: the table `run`.
 
 use std::num::NonZeroU32;
 
@@ -14,12 +14,12 @@ pub(crate) struct Schedule {
     /// s.
     pub(crate) duration: f64,
     pub(crate) pace: Pace,
-    /// Whether the file says nothing of the steps, so that there are as many as are worth looking at.
+    /// Whether the file gives neither step nor accuracy, so that the program chooses both.
     pub(crate) is_left_open: bool,
     pub(crate) method: Method,
-    /// Along an orbit, in the place of equal ones.
+    /// Number of steps per orbit, which replace equal steps.
     pub(crate) steps_per_orbit: Option<NonZeroU32>,
-    /// By which steps get other lengths, the first being the `step`.
+    /// Density that varies the lengths of the steps; `step` is the first of them.
     pub(crate) density: Option<Density>,
 }
 
@@ -27,11 +27,11 @@ pub(crate) struct Schedule {
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Density {
-    /// Of steps in which the body turns by about as much, from this velocity on.
+    /// Steps of about equal turns; this angular velocity bounds their length.
     Turn(Positive<Rate>),
 }
 
-/// What sets the step.
+/// The quantity that determines the step.
 #[derive(Clone, Copy)]
 pub(crate) enum Pace {
     /// A whole number of equal steps, s.
@@ -52,9 +52,9 @@ struct ScheduleTable {
     method: Method,
 }
 
-/// Accuracy of a run that says nothing of steps: at the end an attitude is about 1e-6 rad off.
+/// Default accuracy of a run without a step: at the end the attitude is off by about 1e-6 rad.
 const DEFAULT_ACCURACY: f64 = 1e-6;
-/// A few minutes of stepping.
+/// Most steps of a run, which take some minutes.
 const MOST_STEPS: f64 = 1e8;
 
 impl TryFrom<ScheduleTable> for Schedule {
@@ -64,7 +64,7 @@ impl TryFrom<ScheduleTable> for Schedule {
         let duration = table.duration.value;
         let is_left_open = table.step.is_none() && table.accuracy.is_none() && table.steps_per_orbit.is_none();
         let pace = match (table.step, table.accuracy) {
-            // Set when the orbit is known.
+            // Replaced when the orbit is known.
             _ if table.steps_per_orbit.is_some() => Pace::Step { step: duration, steps: 1 },
             (Some(step), _) => Pace::Step { step: step.value, steps: equal_steps(step.value, duration)? },
             (None, Some(accuracy)) => Pace::Accuracy(accuracy.value),
@@ -75,10 +75,10 @@ impl TryFrom<ScheduleTable> for Schedule {
     }
 }
 
-/// How far a duration may be from a whole number of steps, as a share: the digits that messages have.
+/// Largest relative deviation of a duration from a whole number of steps: numbers in messages have these digits.
 const ROUNDING: f64 = 1e-9;
 
-/// The number of equal steps in a duration, s; of one that isn't [whole](fraction) it is the nearest.
+/// The number of equal steps in a duration, s; the nearest one if the duration isn't [whole](fraction).
 pub(crate) fn equal_steps(step: f64, duration: f64) -> Result<u32, String> {
     if duration < step * (1.0 - ROUNDING) {
         let (duration, step) = (short(duration), short(step));
@@ -88,12 +88,12 @@ pub(crate) fn equal_steps(step: f64, duration: f64) -> Result<u32, String> {
     if steps > MOST_STEPS {
         return Err(format!("`duration` makes {steps:.1e} steps, more than {MOST_STEPS:.0e}; take a larger `step`"));
     }
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between the two
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most the limit above
     let steps = steps as u32;
     Ok(steps)
 }
 
-/// What is wrong with a duration that ends within a step, s.
+/// The message about a duration that ends within a step, s.
 pub(crate) fn fraction(step: f64, duration: f64) -> Option<String> {
     let whole = (duration / step).round() * step;
     ((whole - duration).abs() > ROUNDING * duration).then(|| {

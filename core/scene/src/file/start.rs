@@ -1,4 +1,4 @@
-//! Where a motion starts: attitude and velocity.
+//! The start of a motion: attitude and velocity.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use serde::de::{Deserializer, Error, MapAccess, Visitor};
 use crate::file::key::refuse;
 use crate::file::quantity::{Angle, Number, Rate, Scalar, Triple};
 
-/// The attitude, body to space, and the body velocity in rad/s.
+/// The initial attitude, body to space, and the angular velocity, body frame, rad/s.
 #[derive(Clone, Copy)]
 pub(crate) struct Start {
     pub(crate) attitude: UnitQuaternion<f64>,
@@ -21,11 +21,11 @@ pub(crate) struct Start {
 enum Key {
     /// Precession, nutation and spin: the attitude `R_z(φ) R_x(θ) R_z(ψ)`.
     Euler,
-    /// `[w, x, y, z]`, or these by their names, brought to length one.
+    /// Components `[w, x, y, z]`, or a table of them; normalised.
     Quaternion,
     /// `R_z(yaw) R_y(pitch) R_x(roll)`.
     YawPitchRoll,
-    /// Body frame.
+    /// Angular velocity, body frame.
     Velocity,
     /// Rates of the Euler angles.
     EulerRates,
@@ -34,7 +34,7 @@ enum Key {
 #[derive(Clone, Copy)]
 enum Attitude {
     Euler(Vector3<f64>),
-    /// An attitude by a quaternion or by other angles.
+    /// An attitude by a quaternion, or by yaw, pitch and roll.
     Other(UnitQuaternion<f64>),
 }
 
@@ -56,7 +56,7 @@ impl<'de> Deserialize<'de> for Start {
 
 struct StartTable;
 
-/// By hand, so that a key that doesn't go with another is refused where it stands.
+/// Written by hand, so that conflicting keys are refused at their place.
 impl<'de> Visitor<'de> for StartTable {
     type Value = Start;
 
@@ -76,7 +76,7 @@ impl<'de> Visitor<'de> for StartTable {
                 (Key::Quaternion, ..) => attitude = Some(Attitude::Other(table.next_value::<Components>()?.0)),
                 (Key::YawPitchRoll, ..) => {
                     let angles = table.next_value::<Triple<Angle>>()?.value;
-                    // By the angles about x, y and z.
+                    // The constructor takes the angles about x, y and z.
                     attitude = Some(Attitude::Other(UnitQuaternion::from_euler_angles(angles.z, angles.y, angles.x)));
                 }
                 (Key::Velocity, ..) => velocity = Some(Velocity::Body(table.next_value::<Triple<Rate>>()?.value)),
@@ -124,7 +124,7 @@ struct Named {
     z: Scalar<Number>,
 }
 
-/// The identity of programs that write the scalar part last, and a half turn here.
+/// The identity of programs that write the scalar part last; here it is half a turn.
 const SCALAR_LAST: &str = "`quaternion` begins with w, so this is half a turn about z: write [1, 0, 0, 0] for no turn, \
                            or { w = 0, x = 0, y = 0, z = 1 } for that one";
 
@@ -144,7 +144,7 @@ impl TryFrom<QuaternionValue> for Components {
             },
             QuaternionValue::Named(Named { w, x, y, z }) => [w, x, y, z],
         };
-        // By the largest first, as squares may be too large or too small for a number.
+        // Divided by the largest component first, as squares may overflow or underflow.
         let quaternion = Quaternion::new(w.value, x.value, y.value, z.value);
         let scaled = quaternion / quaternion.coords.amax();
         let unit = UnitQuaternion::try_new(scaled, 0.5).filter(|unit| unit.coords.iter().all(|x| x.is_finite()));
@@ -157,7 +157,7 @@ fn from_euler(angles: &Vector3<f64>) -> UnitQuaternion<f64> {
     about_z(angles.x) * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angles.y) * about_z(angles.z)
 }
 
-/// `Ω = (RᵀR')^∨` of `R = R_z(φ) R_x(θ) R_z(ψ)`.
+/// The angular velocity `Ω = (RᵀR')^∨` of `R = R_z(φ) R_x(θ) R_z(ψ)`.
 fn body_velocity(angles: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64> {
     let ((sin_tilt, cos_tilt), (sin_spin, cos_spin)) = (angles.y.sin_cos(), angles.z.sin_cos());
     let along_nodes = Vector3::new(cos_spin, -sin_spin, 0.0);

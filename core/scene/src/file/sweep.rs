@@ -1,4 +1,4 @@
-//! The scenes that differ in some of their values: the table `sweep`.
+//! Scenes that differ in some of their values: the table `sweep`.
 
 use std::ops::Range;
 
@@ -10,10 +10,10 @@ use crate::file::mistake::{Mistake, Wrong};
 use crate::file::scene::{SceneFile, Sweep};
 use crate::file::tables::{Document, Keys, dotted, ends, set};
 
-/// A run each: more take their time, and another file.
+/// Most scenes of a sweep, each of which is a run.
 const MOST_POINTS: usize = 10_000;
 
-/// A key that is varied, and where its values are.
+/// A varied key, and the place of its values.
 struct Axis<'a> {
     keys: Keys,
     values: Values<'a>,
@@ -22,7 +22,7 @@ struct Axis<'a> {
 
 enum Values<'a> {
     Listed(Vec<Spanned<DeValue<'a>>>),
-    /// Of a range, each as it could have been written.
+    /// Values of a range, each as a text.
     Spread(Vec<String>),
 }
 
@@ -45,7 +45,7 @@ impl Axis<'_> {
     }
 }
 
-/// The scenes that the table makes of a document; `located` finds the place of what is wrong, and `scene` reads one.
+/// The sweep of a document; `located` finds the place of a mistake, and `scene` reads one scene.
 pub(crate) fn read(
     document: &Document<'_>,
     table: &Spanned<DeValue<'_>>,
@@ -81,7 +81,7 @@ pub(crate) fn read(
     Ok(Sweep { names: axes.iter().map(|axis| dotted(&axis.keys)).collect(), points })
 }
 
-/// A key with its values.
+/// A varied key with its values.
 fn axis<'a>((keys, value): (Keys, &Spanned<DeValue<'a>>)) -> Result<Axis<'a>, Wrong> {
     let wrong = |message: &str| Err((value.span(), message.to_owned()));
     let values = match value.get_ref() {
@@ -96,7 +96,7 @@ fn axis<'a>((keys, value): (Keys, &Spanned<DeValue<'a>>)) -> Result<Axis<'a>, Wr
 const RANGE: &str =
     "a range is `{ from = …, to = …, count = … }`: two numbers, or texts with the same unit, and how many";
 
-/// Equal distances, both ends included.
+/// Equally spaced values, both ends included.
 fn spread(range: &DeTable<'_>, span: &Range<usize>) -> Result<Vec<String>, Wrong> {
     let wrong = || (span.clone(), RANGE.to_owned());
     let get = |key| range.get(key).map(Spanned::get_ref).filter(|_| range.len() == 3).ok_or_else(wrong);
@@ -117,7 +117,7 @@ fn spread(range: &DeTable<'_>, span: &Range<usize>) -> Result<Vec<String>, Wrong
     Ok((0..count).map(text).collect())
 }
 
-/// As it is written; lists by spaces, as commas part columns.
+/// A value as written. Lists are separated by spaces, as commas separate columns.
 fn shown(value: &DeValue<'_>) -> String {
     match value {
         DeValue::String(text) => {

@@ -1,4 +1,4 @@
-//! What the file of a system says.
+//! The file of a system of several bodies.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ use crate::file::schedule::{equal_steps, fraction};
 use crate::file::start::Start;
 use crate::file::text::title;
 
-/// The most springs of a file.
+/// Most springs of a file.
 pub(crate) const SPRINGS: usize = 16;
 
 /// Several bodies, with joints and springs between them.
@@ -31,15 +31,15 @@ pub(crate) const SPRINGS: usize = 16;
 /// | table | keys |
 /// |---|---|
 /// | | `title` |
-/// | `[[body]]`, up to eight | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic`, which it is without, `rigid`, which is (3.13), `cayley`; `position` of that in space, m, and how fast it is `moving` there, m/s; `start` as of [one body](crate::SceneFile) |
+/// | `[[body]]`, up to eight | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile) |
 /// | `gravity` | `g`, m/s²; `up`, in space |
-/// | `[[joint]]`, up to four more than make a tree | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: the point of each, m, from its centre of mass in its own frame, of `space` from the origin; `axes` of a pin: that of each, in the same frames |
-/// | `[[spring]]`, up to sixteen | `bodies`, `at` as of joints; `k`, N/m, and `length`, m, at rest |
-/// | `run` | `duration`; `step`, of which that is a whole number; `nearest`: whether joints that are open at the start are closed: positions and their velocities are mended first, then attitudes and angular velocities by as little as can be |
-/// | `picture` | `plane`: `xy`, `xz`, `yz`; without, that in which the motion is the widest |
-/// | `output` | `columns` of a table behind the time, see [`Column`]; `every`: the number of steps from row to row |
+/// | `[[joint]]`, up to four more than make a tree | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` of a pin: an axis in each of the same frames |
+/// | `[[spring]]`, up to sixteen | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
+/// | `run` | `duration`; `step`, of which the duration is a whole number; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
+/// | `picture` | `plane`: `xy`, `xz`, `yz`; by default the plane in which the motion is the widest |
+/// | `output` | `columns` that follow the time in a table, see [`Column`]; `every`: the number of steps from row to row |
 ///
-/// Joints may form loops, up to four of them. Everything else that several bodies can have is for programs: [`liestep::Stepper::jointed`].
+/// Joints may form up to four loops. Other effects on several bodies need a program: [`liestep::Stepper::jointed`].
 #[derive(Clone)]
 pub struct System {
     pub(crate) title: String,
@@ -79,14 +79,14 @@ pub(crate) struct SystemBody {
     pub(crate) start: Start,
 }
 
-/// Something between two bodies, by their numbers; `None` is space.
+/// A joint or a spring between two bodies, by their numbers; `None` is space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Between<T> {
     pub(crate) bodies: [Option<usize>; 2],
     pub(crate) of: T,
 }
 
-/// The points of a joint, and the axes of a pin, of both bodies in their own frames.
+/// The points of a joint, and the axes of a pin, in the frames of its two bodies.
 pub(crate) fn ends_and_axes(joint: &Joint) -> ([Vector3<f64>; 2], Option<[Vector3<f64>; 2]>) {
     match joint {
         Joint::Ball(ball) => ([ball.above, ball.below], None),
@@ -94,7 +94,7 @@ pub(crate) fn ends_and_axes(joint: &Joint) -> ([Vector3<f64>; 2], Option<[Vector
     }
 }
 
-/// Between a point of each, from its centre of mass.
+/// A spring between two points, from their centres of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spring {
     pub(crate) k: f64,
@@ -178,7 +178,7 @@ struct RunTable {
 }
 
 impl System {
-    /// The system that a text describes; `path` is for messages.
+    /// Parses the system of a text; `path` appears in messages.
     ///
     /// # Errors
     ///
@@ -196,7 +196,7 @@ impl System {
         of_table(table, path, places).map_err(|(span, message)| Mistake::at(path, place(&span), message))
     }
 
-    /// What the scene is called.
+    /// The title of the scene.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title
@@ -207,19 +207,19 @@ impl System {
         self.bodies.iter().map(|body| body.name.as_str())
     }
 
-    /// The columns of a table behind the time. Where there are pins the unit of the gap is `m, 1`.
+    /// The columns that follow the time in a table. The gap of pins has the unit `m, 1`.
     #[must_use]
     pub fn columns(&self) -> Vec<recording::Column> {
         let listed = Column::listed(&self.columns, &self.names().collect::<Vec<_>>());
         let unit = |column: recording::Column| {
-            // A length and the cosines of axes.
+            // The gap combines a length with the cosines of axes.
             let is_mixed = column.name == "gap" && self.has_pins();
             if is_mixed { recording::Column { unit: "m, 1".to_owned(), ..column } } else { column }
         };
         listed.into_iter().map(|(column, _)| unit(column)).collect()
     }
 
-    /// What there is, and how it is stepped, in words.
+    /// A description of the parts and the steps, in words.
     #[must_use]
     pub fn about(&self) -> String {
         let turn = |body: &SystemBody| format!("{} ({})", round(self.step * body.start.velocity.norm()), body.name);
@@ -232,7 +232,7 @@ impl System {
         self.joints.iter().any(|joint| matches!(joint.of, Joint::Pin(_)))
     }
 
-    /// What there is, in words.
+    /// A description of the parts, in words.
     pub(crate) fn sum(&self) -> String {
         let counted = |count: usize, one: &str| match count {
             0 => None,
@@ -311,7 +311,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     })
 }
 
-/// A name that two columns have, and the number of the body that one is of.
+/// A name that two columns share, and the number of the body that one of them belongs to.
 fn name_twice(columns: &[Column], bodies: &[&str]) -> Option<(usize, String)> {
     let all = Column::listed(columns, bodies);
     all.iter().enumerate().find_map(|(number, (column, body))| {
@@ -320,11 +320,11 @@ fn name_twice(columns: &[Column], bodies: &[&str]) -> Option<(usize, String)> {
     })
 }
 
-/// A body, and where its name is.
+/// A body, and the place of its name.
 fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>), Wrong> {
     let span = body.span();
     let BodyTable { name, m, moments, J_d, J, kinetic, position, moving, start } = body.into_inner();
-    // It begins the names of columns.
+    // The name of a body is the prefix of its columns.
     let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);
     if name.get_ref().is_empty() || !name.get_ref().chars().all(is_plain) {
         return Err((name.span(), "the `name` of a body has letters, digits, - and _ only".to_owned()));
@@ -348,10 +348,10 @@ fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>), Wrong
     Ok((body, place))
 }
 
-/// What isn't a body.
+/// The name of space among bodies.
 const SPACE: &str = "space";
 
-/// The numbers of two that are named.
+/// The numbers of two named bodies.
 fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], Wrong> {
     let mut numbers = [None; 2];
     for (number, name) in numbers.iter_mut().zip(names.get_ref()) {
@@ -376,7 +376,7 @@ fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<Between<Joint>, 
     let mut between = numbers(&names, bodies)?;
     let mut ends = at.map(|point| point.value);
     let mut axes_of = axes.as_ref().map(|axes| axes.get_ref().each_ref().map(|axis| axis.0));
-    // Space is always above.
+    // Space has to be the first of the two.
     if between[1].is_none() {
         between.swap(0, 1);
         ends.swap(0, 1);

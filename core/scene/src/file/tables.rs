@@ -7,10 +7,10 @@ use toml::de::{DeTable, DeValue};
 
 use crate::file::mistake::Wrong;
 
-/// A text as tables.
+/// The tables of a text.
 pub(crate) type Document<'a> = Spanned<DeTable<'a>>;
 
-/// Where a value is, or the innermost table that there is around it.
+/// The place of a value, or of the innermost table on the way to it that exists.
 pub(crate) fn span(document: &Document<'_>, keys: &[&str]) -> Range<usize> {
     let mut span = document.span();
     let mut table = Some(document.get_ref());
@@ -25,7 +25,7 @@ pub(crate) fn span(document: &Document<'_>, keys: &[&str]) -> Range<usize> {
 /// The keys that lead to a value.
 pub(crate) type Keys = Vec<Spanned<String>>;
 
-/// The ends of a table of tables: all values but those tables that lead on.
+/// The values of nested tables; a table ends the nesting unless `leads_on`.
 pub(crate) fn ends<'t, 'a>(
     table: &'t DeTable<'a>,
     leads_on: &dyn Fn(&DeTable<'a>) -> bool,
@@ -44,12 +44,12 @@ pub(crate) fn ends<'t, 'a>(
     all
 }
 
-/// Keys as they are written.
+/// Keys as written, with dots.
 pub(crate) fn dotted(keys: &[Spanned<String>]) -> String {
     keys.iter().map(|key| key.get_ref().as_str()).collect::<Vec<_>>().join(".")
 }
 
-/// Puts a value where the keys lead, into new tables where there are none.
+/// Sets the value of these keys, in new tables where they don't exist.
 pub(crate) fn set<'a>(
     table: &mut DeTable<'a>,
     keys: &[Spanned<String>],

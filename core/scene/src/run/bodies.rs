@@ -1,5 +1,5 @@
-//! The bodies of a file in a system of one of a few sizes: the bodies behind them rest, and joints that aren't there hold
-//! nothing.
+//! The bodies of a file in a system of one of a few sizes. Padding bodies fill the size and stay at rest, and padding
+//! joints constrain nothing.
 
 use std::array::from_fn;
 
@@ -17,7 +17,7 @@ use crate::file::system::{Between, System, SystemBody};
 use crate::run::nearest::Moving;
 use crate::run::springs::Springs;
 
-/// A body and its weight. Of the three kinetic terms one has the factor one, the others zero.
+/// A body with its weight. One of the three kinetic terms has the factor one, the others zero.
 #[lagrangian(
     group(F = SO3, d = R3),
     advected(x = d.seen_from(space)),
@@ -33,15 +33,15 @@ use crate::run::springs::Springs;
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Heavy {
-    /// About the centre of mass, kg m².
+    /// Moment of inertia about the centre of mass, kg m².
     pub(crate) J: Inertia,
     pub(crate) J_d: NonstandardInertia,
     pub(crate) rigid: f64,
     pub(crate) geodesic: f64,
     pub(crate) cayley: f64,
-    /// kg.
+    /// Mass, kg.
     pub(crate) m: f64,
-    /// m/s².
+    /// Acceleration of gravity, m/s².
     pub(crate) g: f64,
     pub(crate) up: Vector3<f64>,
 }
@@ -52,7 +52,7 @@ pub(crate) type SystemStepper<const N: usize, const L: usize> =
 
 type StateOf<const N: usize, const L: usize> = <SystemStepper<N, L> as Integrator>::State;
 
-/// A joint, or the place of one.
+/// A joint; `None` is padding.
 type Link = Option<Joint>;
 
 impl Arrangement {
@@ -73,7 +73,7 @@ impl Arrangement {
 impl System {
     pub(crate) fn stepper<const N: usize, const L: usize>(&self) -> Result<SystemStepper<N, L>, SetupError> {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
-        // What is behind the bodies is like the first without gravity, and rests.
+        // Padding bodies copy the first body, feel no gravity and stay at rest.
         let heavy = |place: usize| {
             let (body, g) = self.bodies.get(place).map_or((&self.bodies[0], 0.0), |body| (body, g));
             let is = |kinetic| f64::from(u8::from(body.kinetic == kinetic));
@@ -84,7 +84,7 @@ impl System {
         Stepper::jointed(parts, self.arrangement.joints(&self.joints), self.step)
     }
 
-    /// Bodies and velocities of the file.
+    /// The file's initial configurations and velocities.
     fn given(&self) -> Vec<Moving> {
         let of = |body: &SystemBody| {
             let (turn, shift) = (body.start.velocity, body.moving);
@@ -94,7 +94,7 @@ impl System {
         self.bodies.iter().map(of).collect()
     }
 
-    /// The start of the file; where it asks for the nearest one, that from which joints are closed.
+    /// The initial state of the file. With `nearest`, it is the nearest state that satisfies the constraints.
     pub(crate) fn start<const N: usize, const L: usize>(
         &self,
         stepper: &SystemStepper<N, L>,

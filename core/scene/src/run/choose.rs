@@ -1,4 +1,4 @@
-//! The choice of a scene's type and method, once a run.
+//! The choice of a scene's types and method, made once per run.
 
 use std::rc::Rc;
 
@@ -23,23 +23,23 @@ use crate::file::schedule::{Density, Pace};
 use crate::run::course::{MemberStart, course, sample, watches};
 use crate::run::make::{Listeners, Run, Stop, make};
 
-/// What the terms of a scene advect: all vectors, one after the other, with zeros behind them.
+/// The advected vectors of all terms of a scene in one tuple; unused ones are zero.
 type Seen = (V, V, V, V, V, V);
 type V = Vector3<f64>;
-/// Terms of a scene in one program.
+/// A program that sums several terms of a scene.
 type Program<K, W = Seen> = Late<SO3, W, K, Backend>;
-/// The effects of a file and its force.
+/// The program of a file's effects and its force.
 type Rest<W = Seen> = Program<WithoutKinetic, W>;
-/// All of a scene in one program.
+/// The program of all terms of a scene.
 pub type Whole<K = WithEitherKinetic, W = Seen> = Program<K, W>;
 
-/// A [`Whole`] that advects one vector, or none, and whose Jacobian is cheap: shorter states make faster steps.
+/// A [`Whole`] with at most one advected vector and a cheap Jacobian. Its states are shorter, so its steps are faster.
 pub type LeastWhole = Whole<WithKinetic, V>;
 
-/// The stepper of a member in lanes, and the state that it starts from.
+/// The stepper of a member in lanes, and its initial state.
 pub type MemberInLanes<K, W> = (Stepper<Whole<K, W>>, StateOf<Whole<K, W>>);
 
-/// What has a kinetic term: a Lagrangian of the file's own, or a body of the library by its text. With its numbers.
+/// The kinetic term: a Lagrangian of the file's own, or a library body by its text; with its parameters.
 #[derive(Clone)]
 struct Moving {
     own: Option<&'static Declaration>,
@@ -71,7 +71,7 @@ impl Moving {
     }
 }
 
-/// The declarations of this body, if it is one, and of what a file names beside it, derived once a program.
+/// The program of this body, if any, and of the file's effects and force. Each sum is derived once per process.
 fn program<K: KineticPart, W: Advected<SO3> + Slots>(
     file: &SceneFile,
     J: &Inertia,
@@ -86,15 +86,15 @@ fn program<K: KineticPart, W: Advected<SO3> + Slots>(
     Late::of(Declaration::sum(&terms)?)?.with_all(&numbers(file, J, body, 0.0)).map(Some)
 }
 
-/// A scene by its own step as one program, in which members of an ensemble go side by side; none where its steps are others
-/// or see something else at each time, or where its terms need another `K` or `W`.
+/// The program of a scene for members of an ensemble in lanes. `None` for another method, for varying steps, for
+/// effects along orbits, and for terms that need another `K` or `W`.
 pub(crate) fn whole<K: KineticPart, W: Advected<SO3> + Slots>(file: &SceneFile) -> Option<Whole<K, W>> {
     let is_of_one_kind = matches!(file.run.method, Method::Step) && !file.has_steps_of_its_own();
     let J = inertia(file).ok().filter(|_| is_of_one_kind && file.turning().next().is_none())?;
     program(file, &J, Moving::of(file, J).ok().as_ref()).ok()?
 }
 
-/// The same with the numbers of this file, and its start.
+/// The stepper of the program with this file's numbers, and the initial state.
 pub(crate) fn member<K, W>(file: &SceneFile, whole: &Whole<K, W>) -> Result<MemberInLanes<K, W>, Stop>
 where
     W: Advected<SO3> + Slots,
@@ -111,7 +111,7 @@ where
     Ok((stepper, state))
 }
 
-/// No effect that asks for an inertia is beside a Lagrangian.
+/// The inertia. A Lagrangian has no effects that need it.
 fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
     match file.body {
         Some(body) => Ok(body.J),
@@ -119,7 +119,7 @@ fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
     }
 }
 
-/// All their numbers, at a time.
+/// The parameters of all terms at a time, in order.
 fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Moving>, time: f64) -> Vec<f64> {
     let own = file.force.iter().flat_map(|own| own.numbers.iter().copied());
     let body = body.iter().flat_map(|body| body.numbers.iter().copied());
@@ -137,12 +137,12 @@ fn late_error(error: LateError) -> Stop {
     }
 }
 
-/// A stepper of a scene, whatever is advected there.
+/// A stepper of a scene with any advected vectors.
 trait SceneStepper {
-    /// Makes the steps.
+    /// Runs this many steps.
     fn run(&self, file: &SceneFile, steps: u32, listeners: Listeners<'_>) -> Result<Run, Stop>;
 
-    /// One of the same type for all scenes.
+    /// The stepper as a type that all scenes share.
     fn hiding_advected(&self) -> AnyStepper<SO3, ()>;
 }
 
@@ -157,10 +157,10 @@ impl<A: Advected<SO3> + 'static> SceneStepper for AnyStepper<SO3, A> {
     }
 }
 
-/// Simulates the sum of a body and what acts on it. By (3.13) the body is compiled, and the rest is one program; by other
-/// kinetic terms, of a Lagrangian of the file, and where a force is solved for, all is one program.
+/// Simulates a body and its effects. A body of (3.13) has a compiled step, and its effects are one program. All is one
+/// program for other kinetic terms, for a Lagrangian of the file's own, and where an effect enters the step's equation.
 ///
-/// Several effects are added before they are added to a compiled body.
+/// Effects are summed before they are added to a compiled body.
 pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
     match file.run.pace {
         Pace::Accuracy(tolerance) => ask(file, tolerance, listeners),
@@ -168,7 +168,7 @@ pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Sto
     }
 }
 
-/// What steps the scene by its `step`, and its start.
+/// The stepper with the file's `step`, and the initial state.
 pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
     let Pace::Step { step, .. } = file.run.pace else {
         return Err(Stop::Other("the step is chosen for an accuracy by trial runs".to_owned()));
@@ -185,7 +185,7 @@ macro_rules! any {
     };
 }
 
-/// By the declared steps of the body or the Lagrangian, a composition of them, or a method with an exact motion in it.
+/// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.
 fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
     macro_rules! step {
         ($scene:expr) => {
@@ -233,7 +233,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         };
         return turning!(scene, values);
     }
-    // One type of what turns.
+    // All effects along orbits share one type.
     if let Some(rest) = rest::<Seen>(file, &J)?.filter(|_| turns) {
         let scene = RigidBody { J_d: J.to_nonstandard() } + rest.clone();
         let values = move |time| {
@@ -245,13 +245,13 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
     match (file.run.method, file.body.ok_or_else(nothing)?.mass) {
         (Method::Step, Distribution::Principal(J_d)) => {
             let body = PrincipalBody { J_d };
-            // By the least type that has what acts and what is advected.
+            // The smallest type that fits makes the fastest steps.
             if let Ok(kicks) = program::<OnlyKicks, ()>(file, &J, None) {
                 kicks.map_or_else(|| any!(Stepper::new(body, h)), |kicks| any!(Stepper::new(body + kicks, h)))
             } else if let Ok(Some(kicks)) = program::<OnlyKicks, V>(file, &J, None) {
                 any!(Stepper::new(body + kicks, h))
             } else if let Ok(Some(whole)) = program::<WithKinetic, V>(file, &J, Some(&Moving::of(file, J)?)) {
-                // A call for all that is solved for.
+                // One program evaluates the whole residual of the step.
                 any!(Stepper::new(whole, h))
             } else {
                 any!(Stepper::new(body + potential(file, &J)?, h))
@@ -264,12 +264,12 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
     }
 }
 
-/// A file that was read has a body.
+/// A missing body: impossible in a file that was read.
 fn nothing() -> Stop {
     Stop::Other("there is no body".to_owned())
 }
 
-/// By methods that look at inertia and potential only.
+/// The stepper of a method that uses only the inertia and the potential.
 fn with_exact_body(file: &SceneFile, J: &Inertia, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
     let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, J)?;
     match file.run.method {
@@ -281,17 +281,16 @@ fn with_exact_body(file: &SceneFile, J: &Inertia, h: f64) -> Result<Box<dyn Scen
     }
 }
 
-/// What acts on a body, or what is like nothing: one type for methods that look for a potential.
+/// The program of the effects, or of an effect that is zero: methods for a potential then need one type only.
 fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
     let nothing = || Late::parse(Dipole::<f64>::DECLARATION).and_then(|late: Rest| late.with_all(&[0.0; 6]));
     rest(file, J)?.map_or_else(nothing, Ok).map_err(late_error)
 }
 
-/// Fewest steps of a run that leaves their number open: fewer would be drawn as a polygon.
+/// Fewest steps of a run whose number of steps is left open. With fewer, curves would look like polygons.
 const FEWEST: u32 = 1000;
 
-/// The scene by the method of a choice and the fewest steps, where the file leaves their number open and the choice has
-/// less.
+/// The scene with the chosen method and the fewest steps, if the number of steps is left open and the choice has fewer.
 fn refined(file: &SceneFile, choice: &Choice) -> Option<(SceneFile, f64)> {
     let is_coarse = file.run.is_left_open && choice.steps < u64::from(FEWEST);
     let method = Method::of_offer(&choice.chosen().name).filter(|_| is_coarse)?;
@@ -301,7 +300,7 @@ fn refined(file: &SceneFile, choice: &Choice) -> Option<(SceneFile, f64)> {
     Some((refined, step))
 }
 
-/// Makes the steps that an accuracy takes.
+/// Runs the steps that an accuracy requires.
 fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run, Stop> {
     let accuracy = Accuracy { tolerance, horizon: file.run.duration };
     let J = file.body.ok_or_else(nothing)?.J;

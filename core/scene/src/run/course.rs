@@ -1,4 +1,4 @@
-//! What is kept of a run of one body, and the functions of its events.
+//! Samples, steps and event functions for the run of one body.
 
 use liestep::groups::Advected;
 use liestep::motion::{AnyState, AnyStepper, Integrator, Moment};
@@ -10,10 +10,10 @@ use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
 use crate::run::make::{Course, EventFunction};
 
-/// What steps a scene, and the state that it starts from.
+/// The stepper of a scene, and its initial state.
 pub type MemberStart = (AnyStepper<SO3, ()>, AnyState<SO3, ()>);
 
-/// The motion of one body now.
+/// The sample of one body at this moment.
 pub(crate) fn sample<I: Integrator<Group = SO3>>(now: &Moment<'_, I>) -> Sample {
     let body = BodySample::turning(now.attitude(), now.velocity(), now.momentum());
     Sample {
@@ -26,7 +26,7 @@ pub(crate) fn sample<I: Integrator<Group = SO3>>(now: &Moment<'_, I>) -> Sample 
     }
 }
 
-/// The length and the table of a run of this many steps.
+/// The length and the table of a run with this many steps.
 pub(crate) fn course(file: &SceneFile, steps: u64) -> Course<'_> {
     Course {
         steps,
@@ -37,7 +37,7 @@ pub(crate) fn course(file: &SceneFile, steps: u64) -> Course<'_> {
     }
 }
 
-/// The events that a run looks for.
+/// The events that a run detects.
 pub(crate) fn watches<A: Advected<SO3> + 'static>(
     file: &SceneFile,
 ) -> Vec<(recording::Event, EventFunction<AnyStepper<SO3, A>>)> {
@@ -49,12 +49,12 @@ pub(crate) fn watches<A: Advected<SO3> + 'static>(
     file.event.iter().map(watch).collect()
 }
 
-/// An event of a scene for the members of its ensemble: its name, what counts, the function that passes zero there, and
-/// whether the motion ends with it.
+/// An event of a scene for the members of its ensemble: its name, its kind, the function that passes zero at the event,
+/// and whether the event ends the motion.
 pub type MemberEvent<I> = (String, recording::Event, Box<dyn Fn(&Moment<'_, I>) -> f64 + Send + Sync>, bool);
 
 impl SceneFile {
-    /// The events that members are watched for.
+    /// The events to be detected for the members of an ensemble.
     pub fn member_events<I: Integrator<Group = SO3>>(&self) -> impl Iterator<Item = MemberEvent<I>> {
         let axis = self.picture.axis.0;
         let of = move |Event { name, quantity, direction, stops }: &Event| -> MemberEvent<I> {
@@ -64,7 +64,7 @@ impl SceneFile {
     }
 }
 
-/// What counts as the event.
+/// The kind of event for a direction.
 fn kind(direction: Direction) -> recording::Event {
     match direction {
         Direction::Rising => recording::Event::rising(),
@@ -73,13 +73,13 @@ fn kind(direction: Direction) -> recording::Event {
     }
 }
 
-/// The function that rises through zero as the quantity rises through its value; a tilt is that of this body axis.
+/// The function that rises through zero with the quantity through its value. A tilt is that of `axis`, body frame.
 fn function<I: Integrator<Group = SO3>>(
     quantity: Quantity,
     axis: Vector3<f64>,
 ) -> impl Fn(&Moment<'_, I>) -> f64 + Send + Sync + 'static {
     move |now| match quantity {
-        // By the cosine, which is smooth at the vertical.
+        // The cosine is smooth at the vertical, unlike the angle.
         Quantity::Tilt(angle) => angle.cos() - (now.attitude().as_matrix() * axis).z,
         Quantity::Speed(speed) => now.velocity().norm_squared() - speed * speed,
         Quantity::Energy(energy) => now.energy() - energy,

@@ -1,11 +1,11 @@
-//! What a sweep keeps of a run: its end.
+//! The end of a run, as a row for the table of a sweep.
 
 use crate::file::column::Column;
 use crate::file::scene::SceneFile;
 use crate::run::make::Run;
 
 impl SceneFile {
-    /// The names of what [`end`](Self::end) gives.
+    /// The names of the numbers of [`end`](Self::end).
     #[must_use]
     pub fn end_names(&self) -> Vec<String> {
         let columns = self.columns().iter().flat_map(|column| column.names()).copied();
@@ -17,11 +17,11 @@ impl SceneFile {
         columns.chain(events).collect()
     }
 
-    /// The time and the scene's columns at the end of a run, how far energy and angular momentum in space were from their
-    /// start, and of each event how often and when first it happened, s; NaN if never.
+    /// The time and the scene's columns at the end of a run; the greatest deviations of energy and angular momentum in
+    /// space from their start; each event's count, and the time of its first, s, or NaN.
     ///
-    /// The greatest are those of the [samples](Run::samples), which are all steps of a run of up to 20 000; NaN where one
-    /// of them has no value.
+    /// The greatest deviations are those of the [samples](Run::samples), which are all steps of a run of up to 20 000;
+    /// NaN where a sample has no value.
     #[must_use]
     pub fn end(&self, run: &Run) -> Vec<f64> {
         let (Some(first), Some(last)) = (run.samples().first(), run.samples().last()) else { return Vec::new() };
@@ -29,7 +29,7 @@ impl SceneFile {
         for sample in run.samples() {
             let errors = Column::row(&[Column::ENERGY_ERROR, Column::MOMENTUM_ERROR], first, sample);
             for (greatest, value) in greatest.iter_mut().zip(errors) {
-                // `max` would leave out what isn't a number.
+                // `max` would ignore a NaN.
                 *greatest = if greatest.is_nan() || value.is_nan() { f64::NAN } else { greatest.max(value.abs()) };
             }
         }

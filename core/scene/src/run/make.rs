@@ -1,4 +1,4 @@
-//! The steps of a run, and what is kept of them.
+//! The steps of a run, and the recording of its samples, events and table.
 
 use std::cell::RefCell;
 use std::fmt;
@@ -20,13 +20,13 @@ pub struct Run {
     samples: Vec<Sample>,
     /// s.
     step: f64,
-    /// What is said behind it where it is a mean.
+    /// Suffix of the step's length in texts where it is a mean.
     pub(crate) average: &'static str,
     steps: u64,
     happenings: Vec<Happening>,
-    /// The event that ended it.
+    /// The event that ended the run.
     pub(crate) ending: Option<usize>,
-    /// Where an accuracy was asked for.
+    /// The choice of the step, if the scene requires an accuracy.
     pub(crate) choice: Option<Choice>,
     /// Remarks about the file, with their places.
     pub(crate) notes: Vec<Mistake>,
@@ -36,30 +36,30 @@ pub struct Run {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Happening {
-    /// Which of the scene's events, from zero.
+    /// The number of the event in the scene, from zero.
     pub event: usize,
     /// Whether the quantity rose.
     pub rising: bool,
-    /// The motion then.
+    /// The state at the event.
     pub sample: Sample,
 }
 
-/// More are no events but the course of the motion.
+/// Most events of a run.
 const MOST_HAPPENINGS: usize = 1_000_000;
 
-/// Why a run couldn't be started or finished.
+/// The reason why a run couldn't be started or finished.
 #[derive(Debug)]
 pub(crate) enum Stop {
     Setup(SetupError),
     Start(SetupError),
     Accuracy(AccuracyError),
-    /// A spring that is wrong, by its number in the file.
+    /// An invalid spring, by its number in the file.
     Spring(usize, String),
     Step {
         time: f64,
         cause: StepError,
     },
-    /// Not the run, but its table.
+    /// A failure of the table rather than of the run.
     Table(String),
     Other(String),
 }
@@ -75,7 +75,7 @@ impl fmt::Display for Stop {
     }
 }
 
-/// Why a step can't be made, in the words of files.
+/// The failure of a step, in the words of files.
 pub(crate) fn told(cause: &StepError) -> String {
     match *cause {
         StepError::BeyondSolvable { step, largest, turn, .. } if largest > 0.0 => format!(
@@ -87,10 +87,10 @@ pub(crate) fn told(cause: &StepError) -> String {
     }
 }
 
-/// A step of (3.13) that turns a body so far, rad, has its spins wrong by more than a hundredth.
+/// Angle of turn, rad, from which a step of (3.13) has a spin wrong by more than a hundredth.
 const FAST_TURN: f64 = 0.25;
 
-/// A note about a body that turns about so far in a step of (3.13), rad: a spin turns by `asin(hΩ)`.
+/// A note about a body that turns by this angle in a step of (3.13), rad: a spin turns by `asin(hΩ)`.
 pub(crate) fn fast_turn(turn: f64) -> Option<String> {
     (turn > FAST_TURN).then(|| {
         let share = 100.0 * (turn.min(1.0).asin() / turn.min(1.0) - 1.0);
@@ -103,33 +103,33 @@ pub(crate) fn fast_turn(turn: f64) -> Option<String> {
     })
 }
 
-/// A remark about a file, behind its line and column.
+/// A remark about a file, with its line and column.
 pub(crate) type Note = ((usize, usize), String);
 
-/// Who learns of a run while it is made.
+/// The receivers of a run's progress and of its table.
 pub(crate) struct Listeners<'a> {
-    /// The share that is made, from 0 to 1, at most a hundred times.
+    /// Takes the completed share of the run, from 0 to 1, at most a hundred times.
     pub(crate) progress: &'a mut dyn FnMut(f64),
-    /// Where the rows of its table go.
+    /// Destination of the table's rows.
     pub(crate) table: Option<&'a mut dyn Sink>,
 }
 
-/// What of a run a file says: its length and its table.
+/// The length and the table of a run, as prescribed by the file.
 pub(crate) struct Course<'a> {
     pub(crate) steps: u64,
-    /// s; where steps vary, it is their end.
+    /// End of the run, s, for varying steps.
     pub(crate) end: f64,
-    /// In steps from row to row.
+    /// Steps from row to row.
     pub(crate) stride: u64,
     pub(crate) columns: &'a [Column],
-    /// Those of the table, one for each number.
+    /// Columns of the table, one for each number.
     pub(crate) listed: Vec<recording::Column>,
 }
 
 /// The function that passes zero where an event happens.
 pub(crate) type EventFunction<I> = Box<dyn Fn(&Moment<'_, I>) -> f64>;
 
-/// Makes the steps, unless an event stops the run, and keeps as many states as a picture has room for.
+/// Runs the steps, unless an event stops the run, and records as many samples as a picture needs.
 pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
     stepper: &I,
     mut state: I::State,
@@ -142,7 +142,7 @@ pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
     let (numbers, steps, stride) = (RefCell::new(Vec::new()), course.steps, course.stride);
     let until = stepper.length(&state).map(|_| course.end);
     let mut table = listeners.table.map(|sink| TableRecorder::new(course, &numbers, stepper, sink));
-    // The one who writes is asked where nothing is written, too, so that the steps are the same.
+    // The observer of rows is added without a table, too, so that the steps are the same.
     let mut observed = recording::Run::new(stepper, &mut state)
         .every(picture_stride(steps), |now| keep(&mut samples, sample(now)))
         .every(stride, |now| table.as_mut().map_or(Ok(()), |table| table.record(now, sample(now))))
@@ -169,7 +169,7 @@ pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
     if samples.last().is_none_or(|sample| sample.time < last.time) {
         keep(&mut samples, last.clone());
     }
-    // A run that stops leaves its rows, and its own error comes first.
+    // A run that fails still writes its rows, and its own error takes precedence.
     let written = table.map_or(Ok(()), |table| table.finish(&now, last));
     let end = end?;
     written.map_err(|error| Stop::Table(error.to_string()))?;
@@ -201,13 +201,13 @@ fn keep(samples: &mut Vec<Sample>, mut now: Sample) {
     samples.push(now);
 }
 
-/// A table that is written while a run is made.
+/// The writer of a table during a run.
 struct TableRecorder<'a, I: Integrator> {
     columns: &'a [Column],
     recorder: Recorder<'a, I, &'a mut dyn Sink>,
-    /// The first state of the table, and the last.
+    /// The first and the last state of the table.
     ends: Option<(Sample, Sample)>,
-    /// The row that is written last, in which all quantities of the recorder look their number up.
+    /// The last row, from which each quantity of the recorder reads its number.
     numbers: &'a RefCell<Vec<f64>>,
 }
 
@@ -229,7 +229,7 @@ impl<'a, I: Integrator<Group: LieGroup<Scalar: Into<f64>>>> TableRecorder<'a, I>
         self.recorder.record(now)
     }
 
-    /// With the end of the run as its last row.
+    /// Adds the last row, and finishes the table.
     fn finish(mut self, end: &Moment<'_, I>, sample: Sample) -> Result<(), RecordError> {
         let is_written = self.ends.as_ref().is_some_and(|(_, last)| last.time >= sample.time);
         let recorded = if is_written { Ok(()) } else { self.record(end, sample) };
@@ -238,8 +238,8 @@ impl<'a, I: Integrator<Group: LieGroup<Scalar: Into<f64>>>> TableRecorder<'a, I>
 }
 
 impl Run {
-    /// The states that were kept for pictures, the first and the last among them: those of each `k`-th step between, with
-    /// the least `k` for which that is 20 000 at most.
+    /// The samples for pictures: the first state, the last, and the state after every `k`-th step, with the least `k`
+    /// for which these are 20 000 at most.
     #[must_use]
     pub fn samples(&self) -> &[Sample] {
         &self.samples
@@ -251,36 +251,36 @@ impl Run {
         &self.happenings
     }
 
-    /// When an event happened, s.
+    /// The times of an event, s.
     pub(crate) fn times(&self, event: usize) -> impl Iterator<Item = f64> {
         self.happenings.iter().filter(move |happening| happening.event == event).map(|happening| happening.sample.time)
     }
 
-    /// The step, s; of steps that vary their mean.
+    /// The step, s; the mean one if steps vary.
     #[must_use]
     pub fn step(&self) -> f64 {
         self.step
     }
 
-    /// How many steps were made.
+    /// The number of steps.
     #[must_use]
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Remarks about what in the file could be better, though it runs.
+    /// Remarks about possible improvements of the file.
     #[must_use]
     pub fn notes(&self) -> &[Mistake] {
         &self.notes
     }
 
-    /// What was chosen where an accuracy was asked for.
+    /// The choice of the step, if the scene requires an accuracy.
     #[must_use]
     pub fn choice(&self) -> Option<&Choice> {
         self.choice.as_ref()
     }
 
-    /// The scene, the steps and the energy at both ends; what else is said of the ends comes behind it.
+    /// Title, terms, steps and the energy at both ends, followed by the text of `rest`.
     pub(crate) fn summary(&self, title: &str, sum: &str, rest: impl FnOnce(&Sample, &Sample) -> String) -> String {
         let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else { return String::new() };
         let (Self { steps, average, .. }, step, rest) = (self, short(self.step), rest(first, last));

@@ -1,4 +1,4 @@
-//! Running scenes: the choice of a stepper, its steps, and what is kept of them.
+//! Runs of scenes: the choice of a stepper, its steps, and the recording of its results.
 
 pub(crate) mod bodies;
 pub(crate) mod choose;

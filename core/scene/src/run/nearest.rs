@@ -1,4 +1,5 @@
-//! Bodies of a file put where their joints are closed: positions and their velocities are mended, not how bodies turn.
+//! Closing joints that are open in the file: positions and their velocities are corrected, attitudes and angular
+//! velocities aren't.
 
 use liestep::SO3;
 use liestep::groups::R3;
@@ -7,15 +8,15 @@ use nalgebra::{DMatrix, MatrixXx3, SymmetricEigen, Vector3, Vector6};
 use crate::file::system::{System, ends_and_axes};
 use crate::run::stiffness::eigen;
 
-/// A body's attitude and place, and its velocities, turning in its own axes.
+/// Attitude and position of a body, and its velocities; the angular velocity is in the body frame.
 pub(crate) type Moving = ((SO3, R3), Vector6<f64>);
 
 impl System {
-    /// Bodies that are shifted as little as can be, as their masses measure it, to where the points of joints meet, with the
-    /// velocities next to theirs that keep them together. How bodies turn stays; where joints form loops points may stay
-    /// apart, by as little as can be.
+    /// The bodies with the least mass-weighted shifts that close the joints, and with the nearest velocities that keep
+    /// them closed. Attitudes and angular velocities are unchanged. Joints in loops may stay open, by as little as
+    /// possible.
     ///
-    /// For bodies whose turns stay both are linear: with `b` the gaps `R_a ρ_a − R_b ρ_b − (x_b − x_a)` and `A` the
+    /// Both problems are linear at fixed attitudes: with `b` the gaps `R_a ρ_a − R_b ρ_b − (x_b − x_a)` and `A` the
     /// differences `x_b − x_a`, the shifts are `M⁻¹ Aᵀ (A M⁻¹ Aᵀ)⁺ b`.
     pub(crate) fn shifted(&self, mut bodies: Vec<Moving>) -> Vec<Moving> {
         let mut differences = DMatrix::zeros(self.joints.len(), bodies.len());
@@ -58,7 +59,7 @@ fn point(body: Option<Moving>, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f
     })
 }
 
-/// Pseudo-inverse of a symmetric matrix without negative eigenvalues; zero of one that isn't finite.
+/// Pseudo-inverse of a positive semidefinite matrix; zero for one that isn't finite.
 fn pseudo_inverse(matrix: DMatrix<f64>) -> DMatrix<f64> {
     let (rows, columns) = matrix.shape();
     let Some(SymmetricEigen { eigenvectors, eigenvalues }) = eigen(matrix) else {

@@ -26,14 +26,14 @@ impl SceneFile {
     ///
     /// # Errors
     ///
-    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the scene can't be started or a step not be made.
+    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the scene can't be started or a step fails.
     pub fn run(&self) -> Result<Run, Mistake> {
         self.run_with(&mut |_| (), None)
     }
 
-    /// As [`run`](Self::run), with a function that learns a hundred times what share of the run is made, from 0 to 1; and
-    /// with a table of the time and the scene's [columns](Self::columns), a row of each `every`-th step and of the last. The
-    /// rows are written as they come: of a run that stops those up to then.
+    /// Simulates the scene. `progress` is called up to a hundred times with the completed share of the run, from 0 to
+    /// 1. The table has the time and the scene's [columns](Self::columns), with a row for each `every`-th step and for
+    /// the last. Rows are written during the run, so that a run that fails leaves those up to then.
     ///
     /// ```
     /// # fn recorded(scene: &liestep_scene::SceneFile) -> Result<(), Box<dyn std::error::Error>> {
@@ -46,7 +46,8 @@ impl SceneFile {
     ///
     /// # Errors
     ///
-    /// As [`run`](Self::run), and of the kind [`Table`](crate::Kind::Table) where a row can't be written.
+    /// The errors of [`run`](Self::run), and one of the kind [`Table`](crate::Kind::Table) where a row can't be
+    /// written.
     pub fn run_with<'a>(
         &self,
         progress: &'a mut dyn FnMut(f64),
@@ -67,11 +68,12 @@ impl SceneFile {
         fast_turn(self.turn_of_a_step().filter(|_| by_steps)?)
     }
 
-    /// Simulates the scene up to a number of steps; all of one that asks for an accuracy, as its step isn't known before.
+    /// Simulates the scene up to a number of steps. A scene with an accuracy is simulated to its end, as its step isn't
+    /// known before.
     ///
     /// # Errors
     ///
-    /// As [`run`](Self::run).
+    /// The errors of [`run`](Self::run).
     pub fn first(&self, most: u32) -> Result<Run, Mistake> {
         let mut first = self.clone();
         if let Pace::Step { step, steps } = &mut first.run.pace {
@@ -81,27 +83,29 @@ impl SceneFile {
         first.run()
     }
 
-    /// What steps the scene, with the state that it starts from.
+    /// The stepper of the scene, with its initial state.
     ///
     /// # Errors
     ///
-    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where it can't be started.
+    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the scene can't be started.
     pub fn stepper(&self) -> Result<MemberStart, Mistake> {
         choose::stepper(self).map_err(|stop| self.mistake(stop))
     }
 
-    /// The scene as one program, in which members of its ensemble go side by side; none where its steps aren't its own or
-    /// see something else at each time, or need another `K` or `W`: [`LeastWhole`](crate::LeastWhole) is asked for first.
+    /// The scene as one program, for members of its ensemble in lanes. `None` for another method, for varying steps,
+    /// for effects along orbits, and for terms that need another `K` or `W`: try [`LeastWhole`](crate::LeastWhole)
+    /// first.
     #[must_use]
     pub fn whole<K: KineticPart, W: Advected<SO3> + Slots>(&self) -> Option<Whole<K, W>> {
         choose::whole(self)
     }
 
-    /// As [`stepper`](Self::stepper), by the program of a file that differs from this one in numbers alone.
+    /// The stepper and the initial state for lanes, from the program of a file that differs from this one in numbers
+    /// alone.
     ///
     /// # Errors
     ///
-    /// As [`stepper`](Self::stepper).
+    /// The errors of [`stepper`](Self::stepper).
     pub fn in_lanes<K: KineticPart, W: Advected<SO3> + Slots>(
         &self,
         whole: &Whole<K, W>,
@@ -112,14 +116,14 @@ impl SceneFile {
         choose::member(self, whole).map_err(|stop| self.mistake(stop))
     }
 
-    /// The numbers of its columns in a moment of such a stepper, one after the other. Of the two quaternions it is either.
+    /// The numbers of these columns at a moment, one after the other. The sign of a quaternion is arbitrary.
     #[must_use]
     pub fn numbers<I: Integrator<Group = SO3>>(columns: &[Column], now: &Moment<'_, I>) -> Vec<f64> {
         let now = sample(now);
         Column::row(columns, &now, &now)
     }
 
-    /// Why a run stopped, with the place in the file that it is about.
+    /// The mistake for a failed run, with its place in the file.
     fn mistake(&self, stop: Stop) -> Mistake {
         let Origin { path, places } = &self.origin;
         let mut message = stop.to_string();
@@ -130,7 +134,7 @@ impl SceneFile {
                     message.push_str(", or `kinetic = \"geodesic\"` of the body, which may turn further");
                 }
                 let fastest = short(self.start.velocity.amax());
-                // As a person writes degrees.
+                // A number like 180 suggests degrees.
                 if self.start.velocity.amax() >= 20.0 && fastest.len() < 5 {
                     let hint = format!("; numbers alone are in rad/s: were degrees meant, write \"{fastest} deg/s\"");
                     message.push_str(&hint);
@@ -146,7 +150,7 @@ impl SceneFile {
             Stop::Setup(SetupError::InvalidStep { .. }) | Stop::Accuracy(_) | Stop::Step { .. } | Stop::Other(_) => {
                 places.pace
             }
-            // What a method asks of a scene.
+            // Requirements of a method on the scene.
             Stop::Setup(
                 SetupError::NotSeparable { .. }
                 | SetupError::InertiaMismatch { .. }
@@ -160,12 +164,12 @@ impl SceneFile {
         Mistake::of_run(path, place, message)
     }
 
-    /// The events of a run as comma-separated values: the event's name, 1 where the quantity rose and 0 where it fell, the
-    /// time, and the scene's columns.
+    /// The events of a run as comma-separated values: name, 1 where the quantity rose and 0 where it fell, time, and
+    /// the scene's columns.
     ///
     /// # Errors
     ///
-    /// None: it is written to memory.
+    /// None, as it is written to memory.
     pub fn event_table(&self, run: &Run) -> Result<String, Box<dyn Error + Send + Sync>> {
         let mut rows = Csv::new(Vec::new());
         let time = recording::Column { name: "t".to_owned(), unit: "s".to_owned() };
@@ -191,7 +195,7 @@ impl SceneFile {
         Ok(text)
     }
 
-    /// Lines about the beginning and the end of a run, its events, and the table of the choice if there was one.
+    /// Lines about the start and the end of a run, its events, and the table of the choice if there was one.
     #[must_use]
     pub fn summary(&self, run: &Run) -> String {
         let line = |(number, event): (usize, &Event)| {

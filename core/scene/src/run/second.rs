@@ -11,12 +11,12 @@ use crate::file::system::System;
 use crate::run::choose;
 use crate::run::make::{Listeners, Run, Stop};
 
-/// Attitudes that are this far from each other, rad, are of two motions.
+/// Difference of attitudes, rad, beyond which two runs are different motions.
 const ANOTHER: f64 = 1.0;
-/// A velocity that is wrong by this share of the largest is of another motion.
+/// Difference of velocities, relative to the largest, beyond which two runs are different motions.
 const SHARE: f64 = 0.5;
 
-/// Differences of two states, the largest of all bodies: rad, rad/s, m and m/s.
+/// Differences of two states, the largest among all bodies: rad, rad/s, m and m/s.
 struct Apart([f64; 4]);
 
 impl Apart {
@@ -37,7 +37,7 @@ impl Apart {
     }
 }
 
-/// The largest velocities of a run, rad/s and m/s, and how far its bodies go from their starts, m.
+/// The largest angular and linear velocities, rad/s and m/s, and the largest distance of a body from its start, m.
 fn largest(run: &Run) -> [f64; 3] {
     let Some(first) = run.samples().first() else { return [0.0; 3] };
     let mut most = [0.0_f64; 3];
@@ -50,10 +50,10 @@ fn largest(run: &Run) -> [f64; 3] {
     most
 }
 
-/// The line about the end of a run by a method of this order. `again` makes a run of so many steps of this length, s.
+/// The line about the end of a run; `order` is that of its method. `again` simulates a number of steps of a length, s.
 fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) -> Option<String> {
     let steps = u32::try_from(run.steps()).ok().filter(|steps| *steps > 0)?;
-    // The second run has half as many steps; twice as many, where that isn't a whole number or can't be stepped.
+    // The second run has half as many steps; twice as many if that isn't a whole number, or if longer steps fail.
     let longer = (steps % 2 == 0).then(|| again(steps / 2, 2.0 * run.step()).ok()).flatten();
     let (second, is_longer) = match longer {
         Some(second) => (second, true),
@@ -62,7 +62,7 @@ fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) ->
     let share = f64::from(2_u32.saturating_pow(order));
     let factor = if is_longer { 1.0 / (share - 1.0) } else { share / (share - 1.0) };
     let [turning, moving, way] = largest(run);
-    // A motion slower than this is rounding.
+    // Slower motions are rounding errors.
     let floor = 1e-6 / (f64::from(steps) * run.step());
     let limits = [ANOTHER, SHARE * turning.max(floor), SHARE * way.max(1e-6), SHARE * moving.max(floor)];
     let another = |Apart(apart): &Apart| {
@@ -98,8 +98,8 @@ fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) ->
 }
 
 impl SceneFile {
-    /// A line about how far the end of a run is off, as a second run of half as many steps shows, or of twice as many;
-    /// empty where steps aren't equal or are of an accuracy.
+    /// A line about the error at the end of a run, estimated by a second run with half as many steps, or twice as many.
+    /// Empty where steps vary or were chosen for an accuracy.
     #[must_use]
     pub fn end_error(&self, run: &Run) -> String {
         if self.has_steps_of_its_own() || run.choice.is_some() {
@@ -123,7 +123,7 @@ impl SceneFile {
 }
 
 impl System {
-    /// A line about the end of a run, as [`SceneFile::end_error`].
+    /// A line about the error at the end of a run, see [`SceneFile::end_error`].
     #[must_use]
     pub fn end_error(&self, run: &Run) -> String {
         let again = |steps, step| {

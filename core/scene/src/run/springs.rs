@@ -10,7 +10,8 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 
 use crate::file::system::{Between, SPRINGS, Spring};
 
-/// All springs of a file, `V = Σ k (|y| − l)²/2` of `y` from one point to the other, between `N` bodies.
+/// All springs of a file between `N` bodies, with the potential `V = Σ k (|y| − l)²/2`, where `y` connects the two
+/// points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Springs<const N: usize>([Option<Between<Spring>>; SPRINGS]);
 
@@ -27,13 +28,13 @@ impl<const N: usize> Springs<N> {
         self.0.iter().flatten()
     }
 
-    /// `h/2` of the forces and the torques, these in the axes of the bodies.
+    /// The forces and torques, the latter in the body frames, times `h/2`.
     fn kick(&self, places: &Places<N>, half_step: f64) -> Kick<N> {
         let mut kick = Bodies([Vector6::zeros(); N]);
         for between in self.all() {
             let along = between.along(places);
             let (Spring { k, length, at }, size) = (&between.of, along.norm());
-            // Of points at one place a spring has no direction.
+            // A spring whose ends coincide has no direction.
             let tension = if size > 0.0 { along * (k * (1.0 - length / size) * half_step) } else { along };
             for (side, sign) in [(0, 1.0), (1, -1.0)] {
                 let Some(body) = between.bodies[side] else { continue };
@@ -47,12 +48,12 @@ impl<const N: usize> Springs<N> {
 }
 
 impl Between<Spring> {
-    /// From one point to the other, in space.
+    /// The vector from the first point to the second, in space.
     fn along<const N: usize>(&self, places: &Places<N>) -> Vector3<f64> {
         self.along_by(|body| FreeBody::from_matrix_unchecked(places.0[body]))
     }
 
-    /// From one point to the other, in space, of bodies at these places.
+    /// The vector from the first point to the second, in space, for bodies at these places.
     pub(crate) fn along_of(&self, places: &[FreeBody]) -> Vector3<f64> {
         self.along_by(|body| places[body])
     }
@@ -83,7 +84,7 @@ impl<const N: usize> Term for Springs<N> {
     }
 }
 
-/// Kicks alone: what a step's equation is solved for hasn't a part of them.
+/// Springs are kicks only: they aren't in the equation that a step solves.
 impl<const N: usize> Effect for Springs<N> {
     type Retraction = CayleyRetraction;
     type Kinetic = WithoutKinetic;
@@ -99,7 +100,7 @@ impl<const N: usize> Effect for Springs<N> {
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
         for Between { bodies, of: Spring { k, length, at } } in self.all() {
             visitor.term("spring");
-            #[allow(clippy::cast_precision_loss)] // eight
+            #[allow(clippy::cast_precision_loss)] // up to eight
             let numbers = bodies.map(|body| body.map_or(-1.0, |body| body as f64));
             for (name, &value) in numbers.iter().map(|of| ("body", of)).chain(at.iter().flatten().map(|of| ("at", of)))
             {

@@ -1,4 +1,4 @@
-//! The fastest vibration of springs against the step: half a kick, a drift and half a kick are unstable beyond `hω = 2`.
+//! The stability limit of springs: kicks at the ends of a step are unstable beyond `hω = 2` of the fastest vibration.
 
 use liestep::SO3;
 use liestep::groups::R3;
@@ -9,14 +9,15 @@ use crate::file::quantity::{round, short};
 use crate::file::system::{System, ends_and_axes};
 use crate::run::make::Stop;
 
-/// Least distance of a spring's ends, in its lengths at rest: below it the direction is that of roundings.
+/// Least distance of a spring's ends, relative to its length at rest. Below it, rounding errors determine the
+/// direction.
 const NEAREST_ENDS: f64 = 1e-9;
-/// Product `hω` beyond which a note is due: the vibration is a twentieth too fast.
+/// Product `hω` from which a note is due: the vibration is a twentieth too fast.
 const COARSE: f64 = 1.0;
-/// Product `hω` beyond which a vibration grows.
+/// Product `hω` from which a vibration grows.
 pub(crate) const UNSTABLE: f64 = 2.0;
 
-/// A spring's number in the file, and a message about it.
+/// The number of a spring in the file, and a message about it.
 pub(crate) type OfSpring = (usize, String);
 
 pub(crate) const NO_DIRECTION: &str =
@@ -27,7 +28,7 @@ pub(crate) fn has_no_direction(apart: f64, length: f64) -> bool {
     apart <= NEAREST_ENDS * length.abs()
 }
 
-/// Message about a step that is unstable at this rate, rad/s.
+/// The message about a step that is unstable at this rate, rad/s.
 pub(crate) fn unstable(rate: f64, step: f64) -> String {
     let [rate, most, good] = [rate, UNSTABLE / rate, 0.2 / rate].map(round);
     format!(
@@ -37,7 +38,7 @@ pub(crate) fn unstable(rate: f64, step: f64) -> String {
     )
 }
 
-/// Note about a step that is long for a vibration at this rate now, and at that at most, rad/s.
+/// A note about a step that is long for a vibration with the rate `now`, or with an upper bound `most`, rad/s.
 pub(crate) fn coarse(now: f64, most: f64, step: f64) -> Option<String> {
     let good = round(0.2 / now.max(most));
     if step * now > COARSE {
@@ -58,9 +59,9 @@ pub(crate) fn coarse(now: f64, most: f64, step: f64) -> Option<String> {
     })
 }
 
-/// Eigenvalues of a symmetric matrix, and its eigenvectors; none where it isn't finite.
+/// The eigenvalues and eigenvectors of a symmetric matrix; none where it isn't finite.
 pub(crate) fn eigen(matrix: DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
-    /// Sweeps that no finite matrix takes.
+    /// More sweeps than any finite matrix needs.
     const MOST: usize = 10_000;
     let is_finite = !matrix.is_empty() && matrix.iter().all(|entry| entry.is_finite());
     is_finite.then(|| SymmetricEigen::try_new(matrix, f64::EPSILON, MOST)).flatten()
@@ -72,14 +73,17 @@ pub(crate) fn inverse_root(J: &Inertia) -> Matrix3<f64> {
     eigenvectors * Matrix3::from_diagonal(&eigenvalues.map(|moment| moment.sqrt().recip())) * eigenvectors.transpose()
 }
 
-/// The largest entry and its place.
+/// The index of the largest entry, and the entry.
 fn largest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b))
 }
 
 impl System {
-    /// A note about a step that is long for the springs at these places, if there is one; an error where it is unstable, and
-    /// where a spring has no direction.
+    /// A note about a step that is long for the springs at these places, if it is.
+    ///
+    /// # Errors
+    ///
+    /// The step is unstable, or a spring has no direction.
     pub(crate) fn check_springs(&self, places: &[(SO3, R3)]) -> Result<Option<OfSpring>, Stop> {
         for (number, spring) in self.springs.iter().enumerate() {
             if spring.of.length != 0.0 && has_no_direction(spring.along_of(places).norm(), spring.of.length) {
@@ -96,8 +100,8 @@ impl System {
         Ok(coarse(now, most, self.step).map(|why| (number, why)))
     }
 
-    /// The spring with the largest part in the fastest vibration, and its rate, rad/s: in the directions that springs have
-    /// now, or in any.
+    /// The spring with the largest part in the fastest vibration, and its rate, rad/s: in the springs' present
+    /// directions, or with `in_any` in any direction.
     fn fastest(&self, places: &[(SO3, R3)], free: Option<&DMatrix<f64>>, in_any: bool) -> Option<(usize, f64)> {
         let mut all = DMatrix::zeros(3 * self.springs.len(), 6 * self.bodies.len());
         for (number, spring) in self.springs.iter().enumerate() {
@@ -123,7 +127,7 @@ impl System {
         Some((spring, square.max(0.0).sqrt()))
     }
 
-    /// Derivative of a point of a body, or of space, by all bodies' motions, in the units in which each has a mass of one.
+    /// The derivative of a point of a body, or of space, by the motions of all bodies, in mass-weighted coordinates.
     fn moved(&self, places: &[(SO3, R3)], body: Option<usize>, point: &Vector3<f64>) -> Matrix3xX<f64> {
         let mut moved = Matrix3xX::zeros(6 * self.bodies.len());
         if let Some(body) = body {
@@ -135,14 +139,14 @@ impl System {
         moved
     }
 
-    /// Motions that the joints allow, as columns; none where there are no joints.
+    /// The motions that the joints allow, as columns; none without joints.
     fn free_motions(&self, places: &[(SO3, R3)]) -> Option<DMatrix<f64>> {
         let mut held: Vec<Matrix3xX<f64>> = Vec::new();
         for joint in &self.joints {
             let (ends, axes) = ends_and_axes(&joint.of);
             let apart = |of: &dyn Fn(usize) -> Matrix3xX<f64>| of(1) - of(0);
             held.push(apart(&|side| self.moved(places, joint.bodies[side], &ends[side])));
-            // Axes turn with their bodies and aren't shifted.
+            // Axes turn with their bodies, and shifts don't change them.
             held.extend(axes.map(|axes| {
                 apart(&|side| {
                     let mut turned = self.moved(places, joint.bodies[side], &axes[side]);

@@ -1,4 +1,4 @@
-//! Swings of one body against the step, for which its potentials are kicks: unstable beyond `hω = 2`.
+//! The stability limit of one body's potentials: their kicks are unstable beyond `hω = 2` of its fastest swing.
 
 use liestep::mechanics::Inertia;
 use nalgebra::{Matrix3, Vector3};
@@ -11,7 +11,7 @@ use crate::file::schedule::Pace;
 use crate::run::make::{Note, Stop};
 use crate::run::stiffness::{NO_DIRECTION, UNSTABLE, coarse, has_no_direction, inverse_root, unstable};
 
-/// Rates about the least of a potential with these second derivatives by a turn of the body, the slowest first, rad/s;
+/// Rates of small oscillations about a minimum with these second derivatives by a turn of the body, ascending, rad/s;
 /// none where they overflow.
 fn rates(J: &Inertia, second: Matrix3<f64>) -> Option<[f64; 3]> {
     let root = inverse_root(J);
@@ -23,8 +23,11 @@ fn rates(J: &Inertia, second: Matrix3<f64>) -> Option<[f64; 3]> {
 }
 
 impl SceneFile {
-    /// A note about a step that is long for the potentials, if it is, with its place; an error where the spring has no
-    /// direction at the start, and where the step of a scene that is kicked is unstable.
+    /// A note about a step that is long for the spring, if it is, with its place.
+    ///
+    /// # Errors
+    ///
+    /// The spring has no direction at the start, or the kicks of a potential are unstable.
     pub(crate) fn check_kicks(&self) -> Result<Option<Note>, Stop> {
         let Some(body) = self.body else { return Ok(None) };
         let of_spring = self.check_spring(&body.J)?;
@@ -42,7 +45,7 @@ impl SceneFile {
         Ok(of_spring.map(|why| (self.origin.places.spring, why)))
     }
 
-    /// The step of a scene in which potentials are kicks at its ends, s.
+    /// The step of a scene whose potentials are kicks at its ends, s.
     fn kicked_by(&self) -> Option<f64> {
         let is_own_step = matches!(self.run.method, Method::Step) && !self.has_steps_of_its_own();
         match self.run.pace {
@@ -51,9 +54,10 @@ impl SceneFile {
         }
     }
 
-    /// Rates at which the potentials but the spring's make the body swing about where they are the least, rad/s.
+    /// The largest rates of the swings by each potential other than the spring's, rad/s.
     fn swings(&self, J: &Inertia) -> Vec<(&'static str, f64)> {
-        // The potential `c·w` of a vector in space: `|c||w|` about all axes across `c`.
+        // A potential `c·w`, `w` fixed in space, has at its minimum the second derivative `|c||w|` about all axes
+        // across `c`.
         let pulled = |c: Vector3<f64>, w: Vector3<f64>| {
             let axis = c.normalize();
             let [.., rate] = rates(J, Matrix3::identity() - axis * axis.transpose()).unwrap_or_default();
@@ -81,8 +85,11 @@ impl SceneFile {
         [gravity, dipole, gradient].into_iter().flatten().filter(|(_, rate)| rate.is_finite()).collect()
     }
 
-    /// A note about a step that is long for the spring, if there is one; an error where the spring has no direction at the
-    /// start, and where the step of a scene that is kicked is unstable.
+    /// A note about a step that is long for the spring, if it is.
+    ///
+    /// # Errors
+    ///
+    /// The spring has no direction at the start, or its kicks are unstable.
     fn check_spring(&self, J: &Inertia) -> Result<Option<String>, Stop> {
         let Some(spring) = self.spring else { return Ok(None) };
         let (k, length, arm) = (spring.k.value, spring.length.value, spring.at.value);
@@ -95,13 +102,14 @@ impl SceneFile {
         let Some(step) = self.kicked_by() else { return Ok(None) };
         let turn = -arm.cross_matrix();
         let direction = along / apart;
-        // Second derivatives by a turn of the body: along the spring, across it, and of the arm that shortens.
+        // Second derivatives by a turn of the body: along the spring, across it, and by the second-order shift of
+        // the arm's end.
         let projector = direction * direction.transpose();
         let stiffness = projector + (Matrix3::identity() - projector) * (1.0 - length / apart);
         let tilt = direction * arm.transpose();
         let second = turn.tr_mul(&(stiffness * turn)) * k
             + ((tilt + tilt.transpose()) * 0.5 - Matrix3::identity() * tilt.trace()) * (k * (apart - length));
-        // Rates of a spring across its arm are about the heavier and the lighter of two axes.
+        // A spring across its arm vibrates about two axes: a heavier one and a lighter one.
         let (Some([.., now]), Some([_, heavy, light])) = (rates(J, second), rates(J, turn.tr_mul(&turn) * k)) else {
             return Ok(None);
         };
@@ -112,8 +120,8 @@ impl SceneFile {
         Ok(coarse(now, light * across, step))
     }
 
-    /// The largest sine of the angle from the spring to its arm that the energy of the start lets it reach, where the energy
-    /// of the spring is this at the start, J.
+    /// The largest sine of the angle between the spring and its arm that the energy of the start permits; `stretched`
+    /// is the energy of the spring at the start, J.
     fn farthest_across(&self, J: &Inertia, stretched: f64) -> f64 {
         let Some(spring) = self.spring else { return 0.0 };
         let velocity = self.start.velocity;

@@ -1,4 +1,4 @@
-//! The run of a system.
+//! The run of a system of several bodies.
 
 use liestep::motion::Moment;
 use liestep::recording::Sink;
@@ -14,10 +14,11 @@ use crate::file::system::{System, SystemBody};
 use crate::run::bodies::SystemStepper;
 use crate::run::make::{Course, Listeners, Note, Run, Stop, fast_turn, make, told};
 
-/// The systems that there are, the smallest first. With loops there is the largest only: each is code of its own.
+/// The sizes of compiled systems, the smallest first. Only the largest has room for loops, as each size is code of its
+/// own.
 const SIZES: [Size; 4] = [Size::of::<2, 0>(), Size::of::<4, 0>(), Size::of::<BODIES, 0>(), Size::of::<BODIES, LOOPS>()];
 
-/// The room of a system: for this many bodies and loops.
+/// The size of a system: it has room for this many bodies and loops.
 #[derive(Clone, Copy)]
 struct Size {
     bodies: usize,
@@ -25,7 +26,7 @@ struct Size {
     simulate: Simulate,
 }
 
-/// Simulates a number of steps.
+/// A function that simulates a number of steps.
 type Simulate = fn(&System, u64, Listeners<'_>) -> Result<Run, Stop>;
 
 impl Size {
@@ -34,10 +35,10 @@ impl Size {
     }
 }
 
-/// What tells how far joints are open.
+/// The quantity that violates a constraint, for messages.
 const GAP: &str = "lengths in m and cosines of axes together";
 
-/// The motion of the first bodies of a system now.
+/// The sample of the first bodies; the others are padding.
 fn sample<const N: usize, const L: usize>(
     stepper: &SystemStepper<N, L>,
     bodies: usize,
@@ -65,16 +66,17 @@ impl System {
     ///
     /// # Errors
     ///
-    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where it can't be started or a step not be made.
+    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the system can't be started or a step fails.
     pub fn run(&self) -> Result<Run, Mistake> {
         self.run_with(&mut |_| (), None)
     }
 
-    /// As [`SceneFile::run_with`](crate::SceneFile::run_with).
+    /// Simulates the system, see [`SceneFile::run_with`](crate::SceneFile::run_with).
     ///
     /// # Errors
     ///
-    /// As [`run`](Self::run), and of the kind [`Table`](crate::Kind::Table) where a row can't be written.
+    /// The errors of [`run`](Self::run), and one of the kind [`Table`](crate::Kind::Table) where a row can't be
+    /// written.
     pub fn run_with<'a>(
         &self,
         progress: &'a mut dyn FnMut(f64),
@@ -87,7 +89,7 @@ impl System {
     ///
     /// # Errors
     ///
-    /// As [`run`](Self::run).
+    /// The errors of [`run`](Self::run).
     pub fn first(&self, most: u32) -> Result<Run, Mistake> {
         let first = self.simulate(u64::from(most.min(self.steps)), Listeners { progress: &mut |_| (), table: None });
         first.map_err(|stop| self.mistake(stop))
@@ -97,7 +99,7 @@ impl System {
         (self.size().simulate)(self, steps, listeners)
     }
 
-    /// The smallest that has room for the bodies and the loops.
+    /// The smallest size with room for the bodies and the loops.
     fn size(&self) -> Size {
         let [.., largest] = SIZES;
         let fits = |size: &Size| size.bodies >= self.bodies.len() && size.loops >= self.arrangement.loops.len();
@@ -124,7 +126,7 @@ impl System {
         rigid.filter_map(|(body, place)| Some((*place, fast_turn(self.step * body.start.velocity.norm())?)))
     }
 
-    /// Differences of the nearest start from the file, a line for each body that is elsewhere.
+    /// Differences between the nearest start and the file, a line for each body that has one.
     #[must_use]
     pub fn changes(&self, run: &Run) -> String {
         let Some(start) = run.samples().first().filter(|_| self.nearest) else { return String::new() };
@@ -134,7 +136,7 @@ impl System {
             let [moved, faster, quicker] =
                 [given.position - now.position, given.moving - now.moving, given.start.velocity - now.velocity]
                     .map(|change| change.norm());
-            // Smaller changes are roundings, and digits that aren't typed.
+            // Smaller changes are rounding errors.
             let is_changed = moved.max(faster).max(quicker).max(turned) > 1e-9;
             let [moved, turned, faster, quicker] = [moved, turned, faster, quicker]
                 .map(|change| if change > 1e-9 { round(change) } else { "0".to_owned() });
@@ -146,7 +148,7 @@ impl System {
         self.bodies.iter().zip(&start.bodies).filter_map(line).collect()
     }
 
-    /// Lines about the beginning and the end of a run.
+    /// Lines about the start and the end of a run.
     #[must_use]
     pub fn summary(&self, run: &Run) -> String {
         let ends = run.summary(&self.title, &self.sum(), |_, _| {
@@ -160,14 +162,14 @@ impl System {
         ends + &self.changes(run)
     }
 
-    /// Where the joint is that the library gives this number.
+    /// The place in the file of the joint with this number in the library.
     fn of_joint(&self, joint: usize) -> (usize, usize) {
         let of_loop = || self.arrangement.loops.get(joint.checked_sub(self.size().bodies)?);
         let number = self.arrangement.tree.get(joint).or_else(of_loop);
         number.map_or(self.places.pace, |&joint| self.places.joints[joint])
     }
 
-    /// Why a run stopped, with the place in the file that it is about.
+    /// The mistake for a failed run, with its place in the file.
     fn mistake(&self, stop: Stop) -> Mistake {
         let (place, message) = match stop {
             Stop::Table(message) => return Mistake::of_table(&self.path, message),
@@ -182,7 +184,7 @@ impl System {
         Mistake::of_run(&self.path, place, message)
     }
 
-    /// Why it can't be started, behind the place of the body or the joint.
+    /// The reason why the system can't be started, with the place of the body or the joint.
     fn obstacle(&self, error: SetupError) -> ((usize, usize), String) {
         match error {
             SetupError::OffConstraint { joint, by } => {
@@ -230,7 +232,7 @@ impl System {
         }
     }
 
-    /// Why a step can't be made.
+    /// The reason why a step fails, with its place.
     fn end_of_steps(&self, cause: &StepError) -> ((usize, usize), String) {
         match *cause {
             StepError::SingularJoint { joint, pivot } => {

@@ -13,7 +13,7 @@ use crate::file::system::System;
 use crate::run::bodies::Heavy;
 use crate::run::springs::Springs;
 
-/// A term of the library: what is derived of it, and its own text.
+/// A term's derivation, and the text of its declaration.
 type Derivation = (&'static str, &'static str);
 
 const fn derived_of<E: Effect>() -> Derivation {
@@ -35,18 +35,18 @@ fn all() -> impl Iterator<Item = (String, Derivation)> {
     kinetic.chain(EFFECTS.iter().map(|effect| (effect.name("-"), effect.derived)))
 }
 
-/// The names that [`derivation`] knows: the kinetic terms and the effects.
+/// The names for [`derivation`]: the kinetic terms and the effects.
 pub fn derived() -> impl Iterator<Item = String> {
     all().map(|(name, _)| name)
 }
 
-/// What the library derived of an effect, from its declaration to the constants of a step.
+/// The derivation of a term, from its declaration to the constants of a step.
 #[must_use]
 pub fn derivation(name: &str) -> Option<&'static str> {
     all().find(|(other, _)| other == name).map(|(_, (text, _))| text)
 }
 
-/// How a derivation is written, but for plain text.
+/// The form of a derivation other than plain text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// The equations as LaTeX.
@@ -67,20 +67,20 @@ impl Form {
     }
 }
 
-/// The text of one of them, as it is declared.
+/// The declaration of a term, as text.
 #[must_use]
 pub fn declaration(name: &str) -> Option<&'static str> {
     all().find(|(other, _)| other == name).map(|(_, (_, text))| text)
 }
 
-/// What the library derived of an effect, written in this form.
+/// The derivation of a term in this form.
 #[must_use]
 pub fn written(name: &str, form: Form) -> Option<Result<String, LateError>> {
     Some(Declaration::parse(declaration(name)?).and_then(|declaration| form.of(declaration)))
 }
 
 impl SceneFile {
-    /// What was derived of each term of the scene.
+    /// The derivations of the scene's terms.
     #[must_use]
     pub fn derivation(&self) -> String {
         let listed = self.terms().filter_map(|name| derivation(&name).map(|text| format!("{name}\n\n{text}")));
@@ -88,11 +88,11 @@ impl SceneFile {
         listed.chain(own).collect::<Vec<_>>().join("\n")
     }
 
-    /// The derivation of all terms in one, written otherwise.
+    /// The derivation of the sum of all terms, in this form.
     ///
     /// # Errors
     ///
-    /// Where that can't be: see [`LateError::C`].
+    /// The sum can't be written in this form, see [`LateError::C`].
     pub fn written(&self, form: Form) -> Result<String, LateError> {
         let listed = self.terms().filter_map(|name| declaration(&name)).map(Declaration::parse);
         let own = self.own().map(|one| Ok(one.declaration));
@@ -117,13 +117,13 @@ impl SceneFile {
     }
 }
 
-/// What joints hold, as in the documentation of `BallJoint` and `PinJoint`.
+/// The constraints of joints, as in the documentation of `BallJoint` and `PinJoint`.
 const BALLS: &str =
     "joints from a body a, or space, to a body b: x_b + R_b ρ_b − x_a − R_a ρ_a = 0 at both ends of a step\n";
 const PINS: &str = "pins, with e_1 and e_2 across the axis n_a: R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0, too\n";
 
 impl System {
-    /// What was derived of a body, what springs add, and what joints hold.
+    /// The derivation of a body, the terms of springs, and the constraints of joints.
     #[must_use]
     pub fn derivation(&self) -> String {
         let gravity = if self.gravity.is_some() { "" } else { "without gravity, g = 0\n" };

@@ -1,4 +1,4 @@
-//! What is shown of scenes and their runs: pictures, pages, and derived equations.
+//! Output about scenes and their runs: pictures, pages, and derived equations.
 
 pub(crate) mod derivation;
 mod page;

@@ -1,7 +1,6 @@
-//! A page that plays a motion: one file, and nothing that would have to be loaded.
+//! A page that plays a motion: one file that loads nothing else.
 //!
-//! The script is our own, as it needs neither a scene graph nor a charting library; with one of those a page would have
-//! megabytes of it.
+//! The script uses no scene graph and no charting library, which would add megabytes to each page.
 
 use std::fmt::{self, Write as _};
 
@@ -10,13 +9,13 @@ use nalgebra::{Matrix3, SymmetricEigen, UnitQuaternion, Vector3};
 const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
 
-/// More frames than a screen shows in minutes; a run of more is thinned.
+/// Most frames of a page, more than a screen displays in minutes. A longer run is thinned.
 const MOST_FRAMES: usize = 10_000;
 
-/// More lines are no longer told apart.
+/// Most events of a page. More lines couldn't be distinguished.
 const MOST_EVENTS: usize = 1000;
 
-/// All that a page shows. Lists are of the same length.
+/// The contents of a page. Lists have the same length.
 pub(crate) struct Page<'a> {
     pub(crate) title: &'a str,
     pub(crate) about: &'a str,
@@ -30,12 +29,12 @@ pub(crate) struct Page<'a> {
     pub(crate) events: &'a [(f64, String)],
 }
 
-/// Lines over time, in one panel.
+/// Curves over time in one panel.
 #[derive(Clone, Debug)]
 pub(crate) struct Chart {
     title: &'static str,
     unit: &'static str,
-    /// In powers of ten.
+    /// Whether the scale is logarithmic.
     logarithmic: bool,
     lines: Vec<(&'static str, Vec<f64>)>,
 }
@@ -50,33 +49,33 @@ impl Chart {
     }
 }
 
-/// How a body looks, in units of the sphere's radius: a box or, of a symmetric body, a drum with the same inertia.
+/// The displayed shape of a body, in units of the sphere's radius: a box, or a drum for a symmetric body.
 #[derive(Clone, Debug)]
 pub(crate) struct Figure {
-    /// Half of each edge, body frame.
+    /// Half edges, body frame.
     sides: [Vector3<f64>; 3],
-    /// The axis of a drum among the sides.
+    /// The drum's axis among the half edges.
     drum: Option<usize>,
-    /// The middle of the body, from the point about which it turns.
+    /// The middle of the body, relative to the point about which it turns.
     middle: Vector3<f64>,
-    /// What draws the path.
+    /// The body axis whose tip draws the path.
     axis: Vector3<f64>,
 }
 
-/// The largest half edge, of a body that stands on a point and of one that doesn't.
+/// The largest half edge: of a body on a pivot, and of any other.
 const HEAVY_SIZE: f64 = 0.28;
 const SIZE: f64 = 0.5;
-/// From the point to the middle of the body.
+/// Distance from the pivot to the middle of the body.
 const MIDDLE: f64 = 0.55;
-/// So that a sheet is seen from its edge.
+/// Least half edge, so that the edge of a sheet is visible.
 const LEAST: f64 = 0.025;
-/// Two edges that differ by less are drawn as one.
+/// Relative difference below which two edges count as equal.
 const SAME: f64 = 0.01;
 
 impl Figure {
-    /// Of a body with this inertia, and the centre of mass of a heavy one.
+    /// The shape for this inertia; `arm` is the centre of mass of a heavy body.
     pub(crate) fn of(inertia: &Matrix3<f64>, arm: Option<Vector3<f64>>, axis: &Vector3<f64>) -> Self {
-        // The axes of a body that is given in its principal axes are kept in their order.
+        // The axes of a diagonal inertia stay in their order.
         let is_principal = (0..3).all(|i| (0..3).all(|j| i == j || inertia[(i, j)] == 0.0));
         let (moments, frame) = if is_principal {
             (inertia.diagonal(), Matrix3::identity())
@@ -84,7 +83,7 @@ impl Figure {
             let SymmetricEigen { eigenvalues, eigenvectors } = SymmetricEigen::new(*inertia);
             (eigenvalues, eigenvectors)
         };
-        // ∫ x² of a box is a third of its half edge squared.
+        // ∫ x² of a box is a third of its half edge squared, times the mass.
         let half = moments.map(|moment| (0.5 * moments.sum() - moment).max(0.0).sqrt());
         let size = if arm.is_some() { HEAVY_SIZE } else { SIZE };
         let half = (half * (size / half.max())).map(|edge| edge.max(LEAST));
@@ -99,7 +98,7 @@ impl Figure {
     }
 }
 
-/// A text in a script: nothing in it ends the script.
+/// A text in a script, escaped so that it can't end the script.
 struct Text<'a>(&'a str);
 
 impl fmt::Display for Text<'_> {
@@ -116,12 +115,12 @@ impl fmt::Display for Text<'_> {
     }
 }
 
-/// A text in a page, in which nothing is markup.
+/// A text in a page, with its markup escaped.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// Of base 64.
+/// The digits of base 64.
 const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 /// Single-precision numbers in base 64, as a text in a script.
@@ -129,7 +128,7 @@ fn numbers(values: impl IntoIterator<Item = f64>) -> String {
     let bytes: Vec<u8> = values
         .into_iter()
         .flat_map(|value| {
-            #[allow(clippy::cast_possible_truncation)] // seven digits are more than a screen has
+            #[allow(clippy::cast_possible_truncation)] // seven digits are more than a screen resolves
             let single = value as f32;
             single.to_le_bytes()
         })

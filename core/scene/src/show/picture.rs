@@ -13,9 +13,9 @@ use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::make::Run;
 
-/// One for each component of a vector.
+/// Colours of a vector's components.
 const COLOURS: [Colour; 3] = [BLUE, ORANGE, GREEN];
-/// One for each body.
+/// Colours of bodies.
 const BODY_COLOURS: [Colour; BODIES] = [BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILION, INK, YELLOW];
 
 impl SceneFile {
@@ -23,10 +23,10 @@ impl SceneFile {
     ///
     /// # Errors
     ///
-    /// None but of the drawing library, for an impossible layout.
+    /// Only errors of the drawing library, for an impossible layout.
     pub fn picture(&self, run: &Run) -> PlotResult<String> {
         let (picture, samples) = (&self.picture, run.samples());
-        // A step that was chosen for an accuracy has more digits than anyone reads.
+        // A step that was chosen for an accuracy has more digits than are useful.
         let step = format!("{:.4e}", run.step()).parse().unwrap_or(run.step());
         let subtitle = format!("{}, h = {step} s{}", self.sum(), run.average);
         let path = |area: &Area<'_>| picture.draw_path(area, samples);
@@ -36,12 +36,12 @@ impl SceneFile {
 }
 
 impl System {
-    /// The picture of a run as SVG: the paths of the centres of mass, how far each body is turned from its start, and how
-    /// far the energy is from its start.
+    /// The picture of a run as SVG: the paths of the centres of mass, the angle of each body's turn since the start,
+    /// and the change of the energy.
     ///
     /// # Errors
     ///
-    /// None but of the drawing library, for an impossible layout.
+    /// Only errors of the drawing library, for an impossible layout.
     pub fn picture(&self, run: &Run) -> PlotResult<String> {
         let samples = run.samples();
         let Some(start) = samples.first() else { return Err("a run has a state".into()) };
@@ -78,7 +78,7 @@ impl System {
     }
 }
 
-/// The plane across the direction in which places are spread the least; of several directions y comes first, then x.
+/// The plane across the direction in which positions vary the least. Among equal directions y comes first, then x.
 fn plane_of(samples: &[Sample]) -> Plane {
     let spread = |axis: usize| {
         let places = samples.iter().flat_map(|sample| &sample.bodies).map(|body| body.position[axis]);
@@ -86,7 +86,7 @@ fn plane_of(samples: &[Sample]) -> Plane {
         high - low
     };
     let [x, y, z] = [0, 1, 2].map(spread);
-    // Spreads that differ by rounding are equal.
+    // Ranges that differ by rounding errors are equal.
     let least = x.min(y).min(z) + 1e-9 * x.max(y).max(z);
     match (y <= least, x <= least) {
         (true, _) => Plane::Xz,
@@ -176,7 +176,7 @@ fn line(samples: &[Sample], colour: Colour, height: &dyn Fn(&Sample) -> f64) -> 
     Line { colour, width: 3, points: samples.iter().map(|s| (s.time, height(s))).collect() }
 }
 
-/// A panel with one line.
+/// A panel with one curve.
 fn over_time<'a>(
     title: &'a str,
     up: &'a str,

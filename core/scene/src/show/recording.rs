@@ -1,4 +1,4 @@
-//! What a page plays: a scene's run, or one that was written as a table.
+//! Recordings that a page plays: a scene's run, or a table of one.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::file::scene::SceneFile;
 use crate::run::make::{Happening, Run};
 use crate::show::page::{Chart, Figure, Page};
 
-/// A motion with what was recorded of it beside the attitude.
+/// A motion, with recorded quantities over time.
 #[derive(Clone, Debug)]
 pub struct Recording {
     title: String,
@@ -25,15 +25,15 @@ pub struct Recording {
     events: Vec<(f64, String)>,
 }
 
-/// A recording isn't a scene, but it has an end.
+/// Most bytes of a recording, which may be much larger than a scene.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// How streams of Arrow IPC and its files begin.
+/// First bytes of streams and of files of Arrow IPC.
 const ARROW: [&[u8]; 2] = [&[0xff; 4], b"ARROW1"];
 
 impl Recording {
-    /// Reads a table that `liestep run --csv` or [`Csv`](liestep::recording::Csv) wrote: comma-separated values below names. It
-    /// needs the time and the quaternion; energy, momentum and velocity are drawn where they are there, with gaps where
+    /// Reads a table of `liestep run --csv` or [`Csv`](liestep::recording::Csv): comma-separated values below a row of
+    /// names. Time and quaternion are required. Energy, momentum and velocity are drawn if present, with gaps where
     /// they aren't finite.
     ///
     /// # Errors
@@ -65,12 +65,12 @@ impl Recording {
         })
     }
 
-    /// Of columns of one length, called as those of a table; it needs the time and the quaternion, as [`read`](Self::read)
-    /// does.
+    /// The recording of columns of equal length, with the names of a table. Time and quaternion are required, as in
+    /// [`read`](Self::read).
     ///
     /// # Errors
     ///
-    /// A [`Mistake`] where these are missing, or are no motion.
+    /// A [`Mistake`] where a required column is missing, or where the columns are no motion.
     pub fn of_columns(title: &str, about: &str, columns: &[(String, Vec<f64>)]) -> Result<Self, Mistake> {
         Self::of_table(title, about, columns, &|row, message| {
             let place = row.map_or_else(String::new, |row| format!("row {row} "));
@@ -150,8 +150,8 @@ impl Recording {
         }
     }
 
-    /// One page with all that it needs, which plays the motion in a browser: the body and the path of its axis in space,
-    /// and what was recorded over time.
+    /// One page that plays the motion in a browser without loading anything: the body, the path of its axis in space,
+    /// and the recorded quantities over time.
     #[must_use]
     pub fn page(&self) -> String {
         let Self { title, about, figure, times, attitudes, charts, events } = self;
@@ -160,7 +160,7 @@ impl Recording {
 }
 
 impl SceneFile {
-    /// As [`Recording::page`], of a run of this scene.
+    /// The page of a run of this scene, see [`Recording::page`].
     #[must_use]
     pub fn page(&self, run: &Run) -> String {
         Recording::of(self, run).page()
@@ -191,20 +191,20 @@ fn rates(components: [Vec<f64>; 3]) -> Chart {
     Chart::linear("Angular velocity in the body", "rad/s", lines)
 }
 
-/// Comma-separated values.
+/// A table of comma-separated values.
 struct Table {
     names: Vec<String>,
     columns: Vec<Vec<f64>>,
-    /// The line below the names.
+    /// The number of the line below the names.
     below: usize,
-    /// Of each row.
+    /// Line numbers of the rows.
     lines: Vec<usize>,
 }
 
-/// The table in a text, or line, column and what is wrong.
+/// The table of a text, or line, column and message of a mistake.
 fn numbers(text: &str) -> Result<Table, (usize, usize, String)> {
     let (names, below, rows) = header(text.strip_prefix('\u{feff}').unwrap_or(text));
-    // Without these there is no motion.
+    // A motion requires these columns.
     let is_needed = |name: &String| name == "t" || Column::QUATERNION.names().contains(&name.as_str());
     let needed: Vec<_> = names.iter().map(is_needed).collect();
     let (mut columns, mut lines) = (vec![Vec::new(); names.len()], Vec::new());
@@ -230,7 +230,8 @@ fn numbers(text: &str) -> Result<Table, (usize, usize, String)> {
     Ok(Table { names, columns, below, lines })
 }
 
-/// The names, of which those with commas, quotes or line feeds are quoted, the number of the next line, and what is there.
+/// The names, of which those with commas, quotes or line feeds are quoted; the number of the next line; and the rest of
+/// the text.
 fn header(text: &str) -> (Vec<String>, usize, &str) {
     let (mut names, mut is_quoted, mut line) = (vec![String::new()], false, 2);
     let trimmed = |names: Vec<String>| names.iter().map(|name| name.trim().to_owned()).collect();
