@@ -10,21 +10,10 @@ use std::path::Path;
 use super::{code, files, root};
 
 /// The circles that there are, and why. Lines may go, and none be added.
-const CIRCLES: [(&str, &str); 3] = [
-    (
-        "core/scene/src/file/draws.rs core/scene/src/file/scene.rs",
-        "a scene holds its ensemble, and an ensemble the member that its draws are put into",
-    ),
-    (
-        "core/python/src/ensemble.rs core/python/src/scene.rs",
-        "a scene runs its members, and a member starts as a scene does",
-    ),
-    (
-        "core/python/python/liestep/_control.py core/python/python/liestep/_declared.py \
-         core/python/python/liestep/_ensemble.py core/python/python/liestep/_stepper.py",
-        "a declared term has the methods that make steppers, ensembles and plans of it",
-    ),
-];
+const CIRCLES: [(&str, &str); 1] = [(
+    "core/scene/src/file/draws.rs core/scene/src/file/scene.rs",
+    "a scene holds its ensemble, and an ensemble the member that its draws are put into",
+)];
 
 /// A path, by its names.
 type Names = Vec<String>;
