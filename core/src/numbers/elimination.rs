@@ -98,7 +98,7 @@ impl<T: Real> Product<T> {
     }
 }
 
-/// [`Coordinates::factorise_with`] for dense matrices.
+/// [`Coordinates::factorise_with`](super::Coordinates::factorise_with) for dense matrices.
 #[hot]
 pub(super) fn factorise<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>, pattern: Pattern) -> (SMatrix<T, D, D>, T) {
     let (mut factors, mut product) = (*matrix, Product::one());
@@ -181,7 +181,7 @@ fn eliminate_block<T: Real, const D: usize>(
     }
 }
 
-/// [`Coordinates::solve_again_with`] for dense matrices.
+/// [`Coordinates::solve_again_with`](super::Coordinates::solve_again_with) for dense matrices.
 #[hot]
 pub(super) fn solve_again<T: Real, const D: usize>(
     factors: &SMatrix<T, D, D>,

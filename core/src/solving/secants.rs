@@ -1,6 +1,6 @@
 //! The solve without the Jacobian, for Lagrangians to which it costs more than several residuals.
 //!
-//! The free body's Jacobian with the same inertia, [`free_momentum_tangent`](Retraction::free_momentum_tangent),
+//! The free body's Jacobian with the same inertia, [`free_momentum_tangent`](crate::groups::Retraction::free_momentum_tangent),
 //! replaces it. It is computed once a solve at the guess, and Broyden's good updates correct it along the updates made
 //! (in the form that stores the updates and no matrix; C. T. Kelley, *Iterative Methods for Linear and Nonlinear
 //! Equations*, SIAM 1995, section 7.3). For a Lagrangian of order four or more the first update already gains a factor

@@ -9,7 +9,7 @@ use crate::groups::{Advected as _, CayleyRetraction, LieGroup as _, Retraction a
 use crate::mechanics::{DiscreteLagrangian, Term};
 use crate::numbers::{Coordinates, Real, real, reported};
 
-/// The constants for which [`DiscreteLagrangian::kick_before`] is the torque `τ(w)` itself: those of a step of two
+/// The constants for which [`kick_before`](crate::mechanics::Effect::kick_before) is the torque `τ(w)` itself: those of a step of two
 /// seconds, as a half kick is `(h/2) τ`.
 ///
 /// # Errors
