@@ -31,8 +31,8 @@ impl SceneFile {
         self.run_with(&mut |_| (), None)
     }
 
-    /// Simulates the scene. `progress` is called up to a hundred times with the completed share of the run, from 0 to
-    /// 1. The table has the time and the scene's [columns](Self::columns), with a row for each `every`-th step and for
+    /// Simulates the scene. `progress` is called up to a hundred times with the completed share of the run, from
+    /// 0 to 1. The table has the time and the scene's [columns](Self::columns), with a row for each `every`-th step and for
     /// the last. Rows are written during the run, so that a run that fails leaves those up to then.
     ///
     /// ```
