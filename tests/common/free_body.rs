@@ -3,6 +3,9 @@
 use nalgebra::{Matrix3, Vector3};
 use workbench::runge_kutta;
 
+/// The changes of turn and momentum by each variable.
+pub type Columns = Vec<(Vector3<f64>, Vector3<f64>)>;
+
 /// The derivatives of `F`, as `δF = ε̂ F`, and of the momentum after a time with respect to the initial momentum and
 /// the inertia:
 ///
@@ -14,7 +17,7 @@ pub fn variational(
     varied: &[Matrix3<f64>],
     momentum: &Vector3<f64>,
     time: f64,
-) -> (Matrix3<f64>, Vec<(Vector3<f64>, Vector3<f64>)>) {
+) -> (Matrix3<f64>, Columns) {
     const STEPS: u32 = 40_000;
     let inverse = inertia.try_inverse().expect("a body");
     let vector = |y: &[f64], at: usize| Vector3::from_column_slice(&y[at..at + 3]);
