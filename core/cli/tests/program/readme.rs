@@ -25,7 +25,7 @@ fn its_scenes_run() {
     varied.first(100).unwrap();
 }
 
-/// The tip of the declared top after ten seconds, of which the listing in Rust asserts the same: SciPy's DOP853 in quaternions at
+/// The tip of the declared top after ten seconds, of which the listing in Rust asserts the same: the method DOP853 in quaternions at
 /// a tolerance of 1e-13.
 #[test]
 fn its_declared_top_agrees_with_a_runge_kutta_method() {
