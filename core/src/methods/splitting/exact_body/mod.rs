@@ -1,6 +1,6 @@
 //! The free motion of any body, exactly: elliptic functions in rational form.
 //!
-//! With the principal axes `a`, `b`, `c` right-handed and `J_c` the middle moment, let
+//! Let the principal axes `a`, `b`, `c` be right-handed, `J_c` the middle moment, and
 //!
 //! ```text
 //! A = J_c/J_a − 1     B = J_c/J_b − 1     AB ≤ 0     u = (h/2J_c) p, of components a, b, c
