@@ -13,7 +13,8 @@ const TIP: [f64; 3] = [0.576_090_70, 0.407_715_11, 0.708_440_47];
 /// The first listing of README in this language that begins so.
 fn listing(language: &str, beginning: &str) -> String {
     let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")).unwrap();
-    let mut blocks = readme.split(&format!("```{language}\n")).skip(1).filter_map(|rest| rest.split("```").next());
+    let fence = format!("```{language}\n");
+    let mut blocks = readme.split(&fence).skip(1).filter_map(|rest| rest.split("```").next());
     blocks.find(|block| block.starts_with(beginning)).expect("a listing").to_owned()
 }
 
