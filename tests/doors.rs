@@ -19,7 +19,9 @@ fn listing(language: &str, beginning: &str) -> String {
 }
 
 fn assert_tip(tip: Vector3<f64>) {
-    assert!((tip - Vector3::from(TIP)).norm() < 1e-5, "{tip}");
+    let off = (tip - Vector3::from(TIP)).norm();
+    println!("off by {off:e}");
+    assert!(off < 1e-5, "{tip}");
 }
 
 #[test]
