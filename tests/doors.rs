@@ -42,7 +42,9 @@ fn python() {
         println!("skipped: {python} has no package liestep (core/python/run --install builds and tests it)");
         return;
     }
-    let program = listing("python", "import liestep").replace("run.plot()", "print(*run.attitude[-1][:, 2])");
+    // With SciPy an attitude is one of its rotations, else a matrix.
+    let tip = "turns = run.attitude\nprint(*getattr(turns, 'as_matrix', lambda: turns)()[-1][:, 2])";
+    let program = listing("python", "import liestep").replace("run.plot()", tip);
     let output = Command::new(&python).args(["-c", &program]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let numbers = String::from_utf8(output.stdout).unwrap();
