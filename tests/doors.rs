@@ -7,7 +7,7 @@ use std::process::Command;
 
 use nalgebra::Vector3;
 
-/// The tip by SciPy's method DOP853 in quaternions, at a tolerance of 1e-13.
+/// The tip by the method DOP853 of `SciPy` in quaternions, at a tolerance of 1e-13.
 const TIP: [f64; 3] = [0.576_090_70, 0.407_715_11, 0.708_440_47];
 
 /// The first listing of README in this language that begins so.
