@@ -2,6 +2,7 @@
 
 use checks::order::TOPS;
 use declarations::{EqualNeedle, Needle};
+use liestep::accuracy::Accuracy;
 use liestep::groups::{Given, R3};
 use liestep::mechanics::{DiscreteLagrangian as _, Effect};
 use liestep::motion::Plan;
@@ -220,4 +221,13 @@ fn close_passes_with_a_pace() {
     }
     println!("{} steps, nearest {nearest:.1e}, energy {before} off by {most:.1?}", state.steps());
     assert!(nearest < 1.2e-3 && most[1] < 1.01 * most[0] && most[0] < 1e-3);
+}
+
+/// The search would step in the time of the pace, with the energy zero: another motion.
+#[test]
+fn a_pace_has_no_choice_by_accuracy() {
+    let accuracy = Accuracy { tolerance: 1e-6, horizon: 1.0 };
+    let refused = Stepper::for_accuracy(Needle::new(0.8), accuracy, SO3::identity(), Vector3::new(0.1, 0.2, 0.3));
+    let message = refused.map(|_| ()).unwrap_err().to_string();
+    assert!(message.contains("paced()"), "{message}");
 }

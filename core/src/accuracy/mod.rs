@@ -32,7 +32,7 @@ use core::ops::Deref;
 
 use question::Start;
 
-use crate::error::StepError;
+use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scene, Vector};
 use crate::motion::{AnyState, AnyStepper, Integrator as _, Stepper};
@@ -89,6 +89,10 @@ impl<S: Effect> Stepper<S> {
         }
         if !(horizon > 0.0 && horizon.is_finite()) {
             return Err(AccuracyError::Horizon { horizon });
+        }
+        if scene.with_energy(&scene.advected(), 0.0).is_some() {
+            let cause = "has a time of its own, whose steps are those of `Stepper::new(…)?.paced()`";
+            return Err(SetupError::Parameter { field: "pace", cause }.into());
         }
         let (methods, start) = (Methods::of(&scene), Start { attitude: attitude.into(), velocity, horizon });
         let choice = search::search(&methods.0, accuracy, start)?;
