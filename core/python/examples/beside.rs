@@ -1,4 +1,4 @@
-//! What Python is compared with: `cargo run --release -p liestep-python --example beside -- bits`, `steps` or `members FOLDER`.
+//! The references for Python, steps in Rust: `cargo run --release -p liestep-python --example beside -- bits`, `steps` or `members FOLDER`.
 //!
 //! `bits` prints the momentum of the compiled top (3.13) after a thousand steps; `steps` the seconds of a million steps of the
 //! declaration as text, a row each thousand; `members` those of 100,000 members with a hundred steps each.

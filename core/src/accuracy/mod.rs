@@ -104,7 +104,7 @@ impl<S: Effect> Stepper<S> {
 
 /// A stepper chosen for an accuracy by [`Stepper::for_accuracy`].
 ///
-/// It has the steps, times, velocities and energies of the [`AnyStepper`] inside.
+/// The stepper has the steps, times, velocities and energies of the [`AnyStepper`] inside.
 #[derive(Debug)]
 pub struct AccurateStepper<G: LieGroup, A> {
     stepper: AnyStepper<G, A>,

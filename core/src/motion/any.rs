@@ -19,8 +19,8 @@ use crate::motion::summation::Motion;
 /// A [`Stepper`] of any scene and any method on the group `G`, by [`Stepper::into_any`]: for programs that choose scene
 /// and method at run time.
 ///
-/// It steps, runs and is read as an [`Integrator`]. A step costs one more indirect call. A state of another stepper on
-/// this group continues from its attitude and momentum.
+/// The stepper steps, runs and is read as an [`Integrator`]. A step costs one more indirect call. A state of another
+/// stepper on this group continues from its attitude and momentum.
 ///
 /// A clone is the same stepper, and costs nothing.
 pub struct AnyStepper<G: LieGroup, A> {

@@ -77,8 +77,8 @@ pub trait Integrator {
 
     /// The motion a fraction of a step after this state, which stays unchanged.
     ///
-    /// It is a step of the same method with that fraction of `h`. So it has the method's order and, to rounding, its
-    /// invariants: the group, the momentum maps, and for a constant fraction the Poisson structure. It costs one step,
+    /// This motion is a step of the same method with that fraction of `h`. So it has the method's order and, to
+    /// rounding, its invariants: the group, the momentum maps, and for a constant fraction the Poisson structure. It costs one step,
     /// and the folding of its constants. The fractions from 0 to 1 are a path from this state to the next, to rounding;
     /// if a remedy replaced the step, the path may jump by the difference of the two results. A negative fraction is a
     /// step back. The number of steps is that of the state.

@@ -7,7 +7,7 @@ use nalgebra::SimdBool;
 
 /// The scalar of a closed form: a real, or one with its derivatives.
 ///
-/// It has fewer functions than a [`Real`], whose fifty would each need a derivative, and gives them the same names.
+/// This trait has fewer functions than a [`Real`], whose fifty would each need a derivative, under the same names.
 #[hot]
 pub(crate) trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>

@@ -10,7 +10,7 @@ use liestep_derivation::suggestion;
 
 /// A mistake in a scene file or a failure of its run, with its place.
 ///
-/// It is displayed as `file:line:column: message`, with control characters [written out](visible).
+/// A mistake is displayed as `file:line:column: message`, with control characters [written out](visible).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mistake {
     path: PathBuf,

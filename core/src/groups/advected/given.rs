@@ -9,8 +9,8 @@ use crate::numbers::{Real, entries_of_value};
 /// A value that may be [prescribed](crate::Stepper::step_with) in each step: the type for the field `torque` in
 /// `given(u = torque)`, which may be a scalar as a 1 × 1 matrix, a vector or a matrix.
 ///
-/// It is a parameter in the trivial representation: `f⁻¹ · x = x`, and its diamond is zero. A value in the body frame,
-/// as most torques are, has components in the body's axes; units are those of the field.
+/// A prescribed value is a parameter in the trivial representation: `f⁻¹ · x = x`, and its diamond is zero. A value in
+/// the body frame, as most torques are, has components in the body's axes; units are those of the field.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Given<T, const R: usize = 1, const C: usize = 1>(pub SMatrix<T, R, C>);
 

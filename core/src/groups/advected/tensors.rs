@@ -1,7 +1,7 @@
 //! Advected parameters other than covectors: vectors and tensors.
 //!
-//! With `F = I + D` and `F⁻¹ = I + E`, `E = −F⁻¹D`, each product becomes the old value plus a small change, so that a
-//! small step loses no digit.
+//! Each product is written by `F = I + D` and `F⁻¹ = I + E`, `E = −F⁻¹D`, as the old value plus a small change, so that
+//! a small step loses no digit.
 
 use nalgebra::{SMatrix, SVector};
 

@@ -28,7 +28,7 @@ pub type StateOf<S, P = OwnStep<S>> = State<Group<S>, <S as Term>::Advected, <P 
 /// Stepper::for_accuracy(scene, accuracy, …)       the cheapest of all these
 /// ```
 ///
-/// With every method `P`, a motion is [started](Self::start), [stepped](Self::step) and read in the same way, and
+/// A motion by any method `P` is [started](Self::start), [stepped](Self::step) and read in the same way, and
 /// [compensated](Self::compensated) sums, [substeps](Self::or_substeps), control forces and checkpoints are available.
 ///
 /// # Contract

@@ -131,7 +131,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 
     /// Makes one step of the length `h`, s, by the same method; on an error the state is unchanged.
     ///
-    /// It serves times that don't coincide with the end of a step: an impulse at an event, or the end of a motion. It
+    /// Such a step serves times that don't coincide with the end of a step: an impulse at an event, or the end of a motion. It
     /// has the invariants of a step, but isn't counted: the [time](Self::time) is that of the counted steps and these
     /// lengths, also in recordings, events and checkpoints. Steps whose lengths depend irregularly on the state lose
     /// the long-time behaviour; [`with_clock`](Self::with_clock) and [`with_density`](Self::with_density) preserve it.

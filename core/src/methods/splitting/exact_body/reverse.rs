@@ -9,8 +9,8 @@
 //! c · ε = c · dexp(2v̂) 2δv + 2 ⟨g Q, δQ⟩/|Q|²        g = exp(−2v̂) c        dexp(x̂) = I + c₂(|x|²) x̂ + c₃(|x|²) x̂²
 //! ```
 //!
-//! As `2 c₂(4q)` is the square of `sin √q/√q` and `4 c₃(4q) = c₂(q) + c₃(q) cos √q`, the functions of the half angle
-//! suffice. In this file `by_x` is the derivative of `c · ε` with respect to `x`.
+//! The functions of the half angle suffice, as `2 c₂(4q)` is the square of `sin √q/√q` and
+//! `4 c₃(4q) = c₂(q) + c₃(q) cos √q`. In this file `by_x` is the derivative of `c · ε` with respect to `x`.
 
 use nalgebra::{SimdBool as _, Vector3};
 

@@ -12,7 +12,7 @@ use super::super::scheme::{Flow, SplittingScheme};
 /// The coefficients of a processed splitting: a kernel for the steps, and a processor that is applied only at both ends
 /// of a run.
 ///
-/// With the kernel `K_h` and the processor `χ_h` a run of `n` steps is `χ_h ∘ K_hⁿ ∘ χ_h⁻¹`. It has the order of the
+/// A run of `n` steps with the kernel `K_h` and the processor `χ_h` is `χ_h ∘ K_hⁿ ∘ χ_h⁻¹`. It has the order of the
 /// scheme although the kernel alone has order 2: most of the kernel's error is a change of coordinates, which the
 /// processor removes. So a kernel has fewer conditions to satisfy, 3 in place of 6 for order 6, and with as many drifts
 /// and kicks its error is smaller. Both consist of drifts and kicks, some with [force gradients](SplittingScheme), so
