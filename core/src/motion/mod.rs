@@ -19,6 +19,7 @@ mod increment;
 mod integrator;
 mod kept;
 mod plan;
+mod propagator;
 mod report;
 mod right_hand_side;
 mod state;
@@ -33,6 +34,7 @@ pub use increment::Increment;
 pub use integrator::{Answer, Integrator, Moment, ScalarIn};
 pub use kept::Kept;
 pub use plan::{Cost, NextSteps, Plan, Steerable, Variable};
+pub use propagator::{Factor, FactorKind, Layout, Propagator};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;
 #[doc(hidden)]

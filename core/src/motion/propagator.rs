@@ -1,0 +1,171 @@
+//! The seam between typed steppers and programs that choose scene, group and method at run time: states are slices of
+//! numbers, and a layout names them.
+
+use alloc::boxed::Box;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use crate::error::{SetupError, StepError};
+use crate::motion::report::StepReport;
+
+/// A scene, a method and a step `h` as one value, whose states are slices of numbers.
+///
+/// It is object safe: files, Python, ensembles and recorders hold a `dyn Propagator`, and know neither the group nor the
+/// method. A [`Stepper`](crate::Stepper) of any type is one, and so is a declaration that is derived at run time.
+///
+/// # Contract
+///
+/// - A state has the entries that its [`layout`](Self::layout) names, and continues with the same bits wherever it is
+///   copied to.
+/// - An error leaves the state unchanged.
+/// - A slice of another length is an error, [`StepError::NonFinite`] of the "state of this layout", and no panic.
+pub trait Propagator {
+    /// Names, units and places of a state's numbers.
+    fn layout(&self) -> &Layout;
+
+    /// The state at the start, from an attitude, as the matrices of its factors row by row, and a body velocity, on
+    /// SO(3) in rad/s.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Stepper::start`](crate::Stepper::start).
+    fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError>;
+
+    /// Makes one step.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Stepper::step`](crate::Stepper::step).
+    fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError>;
+
+    /// Makes `steps` steps; returns the sum of their iterations.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Stepper::run`](crate::Stepper::run).
+    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError>;
+
+    /// The state a fraction of a step after this one, with the number of steps of this one; its memory is that of a new
+    /// start.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Stepper::step`](crate::Stepper::step).
+    fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError>;
+
+    /// The step `h`, s; if steps vary, their unit.
+    fn step_size(&self) -> f64;
+
+    /// The time since the start, s.
+    fn time(&self, state: &[f64]) -> f64 {
+        self.step_size() * state.last().copied().unwrap_or_default()
+    }
+
+    /// The length of the next step, s; `None` if all have the length [`step_size`](Self::step_size).
+    fn length(&self, _state: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// Writes the body velocity, on SO(3) in rad/s; NaN if no velocity has this momentum.
+    fn velocity(&self, state: &[f64], velocity: &mut [f64]);
+
+    /// The energy, J; NaN if no velocity has this momentum.
+    fn energy(&self, state: &[f64]) -> f64;
+
+    /// Writes the momentum in space, `Ad*_{g⁻¹} μ`.
+    fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]);
+
+    /// The distance of the attitude from the group, `‖RᵀR − I‖` on SO(3).
+    fn defect(&self, state: &[f64]) -> f64;
+}
+
+/// Names, units and places of the numbers of a state: first the attitude, then the momentum, the advected parameters, the
+/// memory of the method, and last the number of steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// The factors of the group, in order.
+    pub factors: Vec<Factor>,
+    /// The names of the advected parameters' numbers; their order is that of the state.
+    pub advected: Vec<String>,
+    /// The number of entries of the memory of the method.
+    pub memory: usize,
+}
+
+/// A factor of the group: its kind, and the names of its components.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Factor {
+    /// The kind of its elements.
+    pub kind: FactorKind,
+    /// The component names with the units of a velocity and of a momentum, such as `x`, `rad/s` and `kg m²/s`.
+    pub components: Vec<(String, [&'static str; 2])>,
+}
+
+/// The kind of a group's elements, by which a recorded attitude is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FactorKind {
+    /// SO(3): a matrix of three rows in a state, a quaternion in a table.
+    Rotation,
+    /// Translations, as homogeneous matrices of this many rows in a state, and coordinates in a table.
+    Translation(usize),
+    /// Matrices of this many rows.
+    Matrix(usize),
+}
+
+impl FactorKind {
+    /// The number of rows of a matrix.
+    #[must_use]
+    pub const fn rows(self) -> usize {
+        match self {
+            Self::Rotation => 3,
+            Self::Translation(rows) | Self::Matrix(rows) => rows,
+        }
+    }
+}
+
+impl Layout {
+    /// The number of entries of an attitude.
+    #[must_use]
+    pub fn entries(&self) -> usize {
+        self.factors.iter().map(|factor| factor.kind.rows() * factor.kind.rows()).sum()
+    }
+
+    /// The number of components of a velocity or a momentum.
+    #[must_use]
+    pub fn components(&self) -> usize {
+        self.factors.iter().map(|factor| factor.components.len()).sum()
+    }
+
+    /// The places of the attitude.
+    #[must_use]
+    pub fn attitude(&self) -> Range<usize> {
+        0..self.entries()
+    }
+
+    /// The places of the momentum.
+    #[must_use]
+    pub fn momentum(&self) -> Range<usize> {
+        let start = self.entries();
+        start..start + self.components()
+    }
+
+    /// The places of the advected parameters.
+    #[must_use]
+    pub fn advected(&self) -> Range<usize> {
+        let start = self.momentum().end;
+        start..start + self.advected.len()
+    }
+
+    /// The places of the memory of the method.
+    #[must_use]
+    pub fn memory(&self) -> Range<usize> {
+        let start = self.advected().end;
+        start..start + self.memory
+    }
+
+    /// The number of entries of a state.
+    #[must_use]
+    pub fn state(&self) -> usize {
+        self.memory().end + 1
+    }
+}
