@@ -37,6 +37,24 @@ pub enum SetupError {
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
+    /// A method that the scene, or its group, doesn't have.
+    #[error("the method {cause}")]
+    Method {
+        /// The reason, as a predicate, and what to take.
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        cause: Text,
+    },
+    /// A list of numbers has another length than the group's.
+    #[error("the {what} has {found} numbers, and {expected} are needed: entries of matrices row by row, or components")]
+    Length {
+        /// The list.
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        what: Text,
+        /// Its length.
+        found: usize,
+        /// The length of the group's.
+        expected: usize,
+    },
     /// A parameter of one of several bodies has a value that can't be used.
     #[error("parameter `{field}` of the body {body} (from zero) {cause}; give it another value")]
     BodyParameter {

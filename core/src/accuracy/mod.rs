@@ -25,7 +25,6 @@ mod search;
 
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
-pub use methods::{Methods, Steppable};
 pub use question::{Accuracy, End, Trials};
 
 use core::ops::Deref;
@@ -33,9 +32,9 @@ use core::ops::Deref;
 use question::Start;
 
 use crate::error::{SetupError, StepError};
-use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scene, Vector};
 use crate::motion::{AnyState, AnyStepper, Integrator as _, Stepper};
+use crate::with::Steppable;
 
 impl<S: Effect> Stepper<S> {
     /// The cheapest method for an accuracy, with the longest sufficient step for the motion from this attitude (body to
@@ -78,7 +77,7 @@ impl<S: Effect> Stepper<S> {
         accuracy: Accuracy,
         attitude: impl Into<Group<S>>,
         velocity: Vector<S>,
-    ) -> Result<AccurateStepper<Group<S>, S::Advected>, AccuracyError>
+    ) -> Result<AccurateStepper, AccuracyError>
     where
         S: Scene<Scalar = f64>,
         Group<S>: Steppable<S>,
@@ -94,10 +93,10 @@ impl<S: Effect> Stepper<S> {
             let cause = "has a time of its own, whose steps are those of `Stepper::new(…)?.paced()`";
             return Err(SetupError::Parameter { field: "pace", cause }.into());
         }
-        let (methods, start) = (Methods::of(&scene), Start { attitude: attitude.into(), velocity, horizon });
-        let choice = search::search(&methods.0, accuracy, start)?;
-        let stepper = (methods.0[choice.chosen].make)(choice.chosen().step)?;
-        let start = stepper.start(start.attitude, start.velocity)?;
+        let (candidates, start) = (methods::candidates(&scene), Start::new(&attitude.into(), &velocity, horizon));
+        let choice = search::search(&candidates, accuracy, &start)?;
+        let stepper = (candidates[choice.chosen].make)(choice.chosen().step)?;
+        let start = stepper.start(&start.attitude, &start.velocity)?;
         Ok(AccurateStepper { stepper, start, choice })
     }
 }
@@ -106,16 +105,16 @@ impl<S: Effect> Stepper<S> {
 ///
 /// The stepper has the steps, times, velocities and energies of the [`AnyStepper`] inside.
 #[derive(Debug)]
-pub struct AccurateStepper<G: LieGroup, A> {
-    stepper: AnyStepper<G, A>,
-    start: AnyState<G, A>,
+pub struct AccurateStepper {
+    stepper: AnyStepper,
+    start: AnyState,
     choice: Choice,
 }
 
-impl<G: LieGroup, A: Advected<G>> AccurateStepper<G, A> {
+impl AccurateStepper {
     /// The start of the motion for which the accuracy was requested.
     #[must_use]
-    pub fn start(&self) -> AnyState<G, A> {
+    pub fn start(&self) -> AnyState {
         self.start.clone()
     }
 
@@ -125,7 +124,7 @@ impl<G: LieGroup, A: Advected<G>> AccurateStepper<G, A> {
     /// # Errors
     ///
     /// [`StepError`] of the method; none for the motion from [`start`](Self::start).
-    pub fn run(&self, state: &mut AnyState<G, A>) -> Result<(), StepError> {
+    pub fn run(&self, state: &mut AnyState) -> Result<(), StepError> {
         self.stepper.run(state, self.choice.steps.saturating_sub(state.steps())).map(|_| ())
     }
 
@@ -136,10 +135,10 @@ impl<G: LieGroup, A: Advected<G>> AccurateStepper<G, A> {
     }
 }
 
-impl<G: LieGroup, A> Deref for AccurateStepper<G, A> {
-    type Target = AnyStepper<G, A>;
+impl Deref for AccurateStepper {
+    type Target = AnyStepper;
 
-    fn deref(&self) -> &AnyStepper<G, A> {
+    fn deref(&self) -> &AnyStepper {
         &self.stepper
     }
 }

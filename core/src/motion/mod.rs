@@ -25,16 +25,18 @@ mod right_hand_side;
 mod state;
 mod summation;
 
-pub use any::{AnyHistory, AnyState, AnyStepper};
+pub use crate::groups::layout::{Factor, FactorKind};
+pub use any::{AnyMotion, AnyState, AnyStepper};
 pub use batch::{Batch, Batchable};
 pub use declared::OwnStep;
 pub(crate) use declared::{beyond_solvable, half_coordinates};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
 pub use increment::Increment;
-pub use integrator::{Answer, Integrator, Moment, ScalarIn};
+pub(crate) use integrator::write_row;
+pub use integrator::{Answer, Integrator, Moment};
 pub use kept::Kept;
 pub use plan::{Cost, NextSteps, Plan, Steerable, Variable};
-pub use propagator::{Factor, FactorKind, Layout, Propagator};
+pub use propagator::{Layout, Propagator};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;
 #[doc(hidden)]
