@@ -6,8 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use clap::ArgMatches;
-use liestep::SO3;
-use liestep::motion::{Integrator, Moment};
+use liestep::motion::Moment;
 use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
 use liestep_scene::{Column, LeastWhole, MemberEvent, Mistake, Rotating, SceneEnsemble, SceneFile, Spread, Whole};
 

@@ -70,6 +70,20 @@ impl Scheme {
         }
     }
 
+    /// The kind and the name within it; the name is empty for the own step and the exact motion.
+    #[must_use]
+    pub fn parts(&self) -> (&'static str, &'static str) {
+        match self {
+            Self::Step => ("step", ""),
+            Self::Exact => ("exact", ""),
+            Self::Composition(scheme) => ("composition", scheme.name()),
+            Self::Splitting(scheme) => ("splitting", scheme.name()),
+            Self::Processed(scheme) => ("processed", scheme.name()),
+            Self::Collocation(Stages::Four) => ("collocation", "4"),
+            Self::Collocation(Stages::Eight) => ("collocation", "8"),
+        }
+    }
+
     /// The kinds that have several schemes, with their names.
     #[must_use]
     pub fn names() -> [(&'static str, Vec<&'static str>); 4] {
@@ -116,15 +130,11 @@ fn is_short_for(own: &str, kind: &str, name: &str) -> bool {
 
 impl fmt::Display for Scheme {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Step => f.write_str("step"),
-            Self::Exact => f.write_str("exact"),
-            Self::Composition(scheme) => write!(f, "composition {}", scheme.name()),
-            Self::Splitting(scheme) => write!(f, "splitting {}", scheme.name()),
-            Self::Processed(scheme) => f.write_str(scheme.name()),
-            Self::Collocation(Stages::Four) => f.write_str("collocation 4"),
-            Self::Collocation(Stages::Eight) => f.write_str("collocation 8"),
-        }
+        let (kind, name) = self.parts();
+        // The name of a processed scheme begins with its kind.
+        let name = name.strip_prefix(kind).map_or(name, str::trim_start);
+        f.write_str(kind)?;
+        if name.is_empty() { Ok(()) } else { write!(f, " {name}") }
     }
 }
 
