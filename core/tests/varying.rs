@@ -152,9 +152,9 @@ fn time_is_that_of_the_lengths() {
     assert_eq!(ended.steps, 5);
     assert!(times.iter().zip(0..).all(|(t, k)| (t - 0.0037 - 0.01 * f64::from(k)).abs() < 1e-16), "{times:?}");
     assert!(apart(&stepper.state_at(&state, 0.0537).unwrap(), &state) < 1e-13);
-    let hidden = stepper.clone().into_any().hiding_advected();
-    let erased = hidden.start(attitude, velocity).unwrap();
-    assert_eq!((hidden.time(&erased), hidden.length(&erased)), (0.0, None));
+    let any = stepper.clone().into_any();
+    let erased = any.start_at(SO3::from(attitude), velocity).unwrap();
+    assert_eq!((any.time(&erased), any.length(&erased)), (0.0, None));
 
     let timed = Stepper::new(scene, 0.01).unwrap().with_clock(Clock::orbit(0.5, 30.0, 31).unwrap());
     let start = timed.start(attitude, velocity).unwrap();
@@ -453,11 +453,10 @@ fn a_close_pass_with_a_density() {
     let fixed = Stepper::new(scene, varied.time(&state) / f64::from(10 * steps)).unwrap();
     let mut other = fixed.start(start.0, start.1).unwrap();
     let mut off = 0.0_f64;
-    let far_off = |now: &liestep::motion::Moment<'_, _>| distance(now.attitude()) > 1.0;
     fixed
         .observed(&mut other)
         .every(1, |now| {
-            if far_off(now) {
+            if distance(now.attitude()) > 1.0 {
                 off = off.max((now.energy() - before).abs());
             }
         })

@@ -131,11 +131,7 @@ fn finished<M: Rotating + 'static>(
 }
 
 /// The plan of an ensemble. The file's text identifies it.
-fn plan<M: Rotating + 'static>(
-    scene: &SceneFile,
-    drawn: &SceneEnsemble,
-    members: Ensemble<M>,
-) -> Ensemble<M> {
+fn plan<M: Rotating + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, members: Ensemble<M>) -> Ensemble<M> {
     let mut plan = members.seed(drawn.seed);
     if let Some(every) = drawn.every {
         plan = plan.every(every);
@@ -179,10 +175,7 @@ fn number(member: &Member<'_>, name: &str, spread: Spread) -> f64 {
 }
 
 /// The section of an event: its times, and the scene's columns then.
-fn section<M: Rotating + 'static>(
-    scene: &SceneFile,
-    (name, event, function, stops): MemberEvent<M>,
-) -> Section<M> {
+fn section<M: Rotating + 'static>(scene: &SceneFile, (name, event, function, stops): MemberEvent<M>) -> Section<M> {
     let section = Section::new(event, function);
     let section = if stops { section.until() } else { section };
     let section = section.keep([&format!("{name}_t")], |now| [now.time()]);

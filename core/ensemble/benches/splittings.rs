@@ -9,7 +9,7 @@ use std::time::Instant;
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Sum};
 use liestep::methods::{ProcessedScheme, ProcessedSplitting, Splitting, SplittingScheme, SymmetricBody};
-use liestep::motion::{Batch, Batchable, Integrator};
+use liestep::motion::{Batch, Batchable, Integrator, Motion};
 use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use simba::simd::AutoF64x8;
@@ -58,7 +58,7 @@ fn body(number: u32) -> Body {
 
 /// The coefficients of a splitting, as they are or with a processor.
 trait Scheme: Copy {
-    type Stepper: Batchable<AutoF64x8> + Integrator<Group = SO3, Advected = ((), Vector3<f64>)>;
+    type Stepper: Batchable<AutoF64x8> + Integrator<Motion = Motion<SO3, ((), Vector3<f64>)>>;
 
     fn name(self) -> &'static str;
 

@@ -231,7 +231,8 @@ impl<M: Integrator> Section<M> {
             return Ok(Vec::new());
         }
         let before = waited.unwrap_or_else(at.before);
-        let mut found = (self.find)(self, stepper, &before, M::steps(&(at.now)()) - M::steps(&before)).map_err(failure)?;
+        let mut found =
+            (self.find)(self, stepper, &before, M::steps(&(at.now)()) - M::steps(&before)).map_err(failure)?;
         if self.only_first {
             found.truncate(1);
             watch.is_done = !found.is_empty();
