@@ -1,6 +1,7 @@
 //! The basis of a matrix Lie algebra, in numbers: what its generators say of the group.
 
 use super::StepRefusal;
+use super::linear::{ROUNDING, inverse_of};
 
 /// What the generators say of the inverse and of the increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,9 +50,6 @@ const ROTATIONS: [[f64; 9]; 3] = [
     [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
 ];
 
-/// Generators have decimals, and so few products that roundings stay far below.
-const ROUNDING: f64 = 1e-9;
-
 impl Basis {
     /// The basis of these matrices.
     pub(super) fn of(generators: &[Vec<f64>]) -> Result<Self, StepRefusal> {
@@ -61,9 +59,10 @@ impl Basis {
         let gram = |i: usize, j: usize| pairing(&generators[i], &generators[j]);
         let pairs = (0..count).flat_map(|i| (0..i).map(move |j| (i, j)));
         let is_orthogonal = pairs.into_iter().all(|(i, j)| gram(i, j).abs() < ROUNDING);
-        let rows: Vec<Vec<f64>> = (0..count).map(|i| (0..count).map(|j| gram(i, j)).collect()).collect();
-        let inverse = inverse_of_definite(rows).ok_or(StepRefusal::Dependent)?;
-        let factor = |place: usize, k: usize| (0..count).map(|j| inverse[k][j] * generators[j][place]).sum::<f64>();
+        let pairings: Vec<f64> = (0..count * count).map(|at| gram(at / count, at % count)).collect();
+        let inverse = inverse_of(count, &pairings).ok_or(StepRefusal::Dependent)?;
+        let factor =
+            |place: usize, k: usize| (0..count).map(|j| inverse[k * count + j] * generators[j][place]).sum::<f64>();
         let places = (0..size * size).flat_map(|place| (0..count).map(move |k| (k, place)));
         let dual = places.map(|(k, place)| (k, place, factor(place, k))).filter(|term| term.2.abs() > 1e-14).collect();
         Ok(Self {
@@ -90,7 +89,8 @@ impl Basis {
         if all.iter().all(|a| all.iter().all(|b| self.times(a, b).iter().all(|&entry| entry == 0.0))) {
             return Form::Translation;
         }
-        let is_skew = |e: &[f64], k: usize| (0..k * k).all(|at| e[at / k * n + at % k] == -e[at % k * n + at / k]);
+        let vanish = |a: f64, b: f64| a + b == 0.0;
+        let is_skew = |e: &[f64], k: usize| (0..k * k).all(|at| vanish(e[at / k * n + at % k], e[at % k * n + at / k]));
         if all.iter().all(|e| is_skew(e, n)) {
             return Form::Orthogonal;
         }
@@ -98,7 +98,7 @@ impl Basis {
         if let Some(k) = (2..n).rev().find(is_rigid) {
             return Form::Rigid(k);
         }
-        let is_traceless = |e: &Vec<f64>| e[0] == -e[3];
+        let is_traceless = |e: &Vec<f64>| vanish(e[0], e[3]);
         if n == 2 && all.iter().all(is_traceless) { Form::Unimodular } else { Form::General }
     }
 
@@ -128,7 +128,7 @@ impl Basis {
     }
 
     /// Whether a matrix is in the algebra.
-    fn has(&self, matrix: &[f64]) -> bool {
+    pub(super) fn has(&self, matrix: &[f64]) -> bool {
         let mut rest = matrix.to_vec();
         for &(k, place, factor) in &self.dual {
             for (rest, e) in rest.iter_mut().zip(&self.generators[k]) {
@@ -150,25 +150,4 @@ impl Basis {
         };
         (0..count).all(|i| (i..count).all(|j| (j..count).all(|k| self.has(&orders(i, j, k)))))
     }
-}
-
-/// The inverse of a positive definite matrix; `None` if it is singular.
-fn inverse_of_definite(mut rows: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
-    let count = rows.len();
-    for (i, row) in rows.iter_mut().enumerate() {
-        row.extend((0..count).map(|j| f64::from(u8::from(i == j))));
-    }
-    for k in 0..count {
-        let pivot = rows[k][k];
-        if pivot.abs() < ROUNDING {
-            return None;
-        }
-        rows[k].iter_mut().for_each(|entry| *entry /= pivot);
-        let reference = rows[k].clone();
-        for row in rows.iter_mut().enumerate().filter(|(i, _)| *i != k).map(|(_, row)| row) {
-            let factor = row[k];
-            row.iter_mut().zip(&reference).for_each(|(entry, of)| *entry -= factor * of);
-        }
-    }
-    Some(rows.into_iter().map(|row| row[count..].to_vec()).collect())
 }

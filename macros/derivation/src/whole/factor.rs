@@ -5,8 +5,9 @@
 use super::StepRefusal;
 use super::basis::{Basis, Chart, Form};
 use super::matrix::Matrix;
+use super::relations::{Relations, restored};
 use super::values::{Value, Words};
-use crate::staged::Array;
+use crate::staged::{Array, Source};
 
 /// A factor of the group, and its place among all.
 #[derive(Clone, Debug)]
@@ -19,6 +20,9 @@ pub struct MatrixFactor {
     pub form: Form,
     /// The coordinates of increments.
     pub chart: Chart,
+    relations: Relations,
+    /// The bilinear form that is restored, on this many rows.
+    regular_form: Option<(usize, Vec<f64>)>,
     /// The place of its first entry in an attitude.
     pub entry: usize,
     /// The place of its first component in a velocity or a momentum.
@@ -29,7 +33,9 @@ impl MatrixFactor {
     pub(super) fn of(name: &str, generators: &[Vec<f64>], [entry, component]: [usize; 2]) -> Result<Self, StepRefusal> {
         let basis = Basis::of(generators)?;
         let (form, chart) = (basis.form(), basis.chart()?);
-        Ok(Self { name: name.to_owned(), basis, form, chart, entry, component })
+        let relations = Relations::of(&basis);
+        let regular_form = relations.regular_form(form, basis.size);
+        Ok(Self { name: name.to_owned(), basis, form, chart, relations, regular_form, entry, component })
     }
 
     /// The number of rows of its matrices.
@@ -42,6 +48,22 @@ impl MatrixFactor {
     #[must_use]
     pub fn dimension(&self) -> usize {
         self.basis.dimension()
+    }
+
+    /// Whether rounding's distance from the group is taken back, by [`Programs::restored`](super::Programs::restored).
+    #[must_use]
+    pub const fn is_restored(&self) -> bool {
+        self.regular_form.is_some()
+    }
+
+    /// The distance of a matrix from the group; none of its entries is known.
+    pub(super) fn defect(&self, words: &mut Words, g: &Matrix) -> Value {
+        self.relations.defect(words, self.form, g)
+    }
+
+    /// The distance of a matrix from the group and a nearer matrix, if there is a form to restore.
+    pub(super) fn restored(&self, words: &mut Words, g: &Matrix) -> Option<Vec<Value>> {
+        self.regular_form.as_ref().map(|form| restored(words, g, form))
     }
 
     /// Its part of the components of all factors.
@@ -298,11 +320,15 @@ impl MatrixFactor {
         Some(words.multiply(square, Value::of(factor)))
     }
 
-    /// Its matrix in an array with the entries of all factors.
-    pub(super) fn read(&self, array: Array, entries: usize) -> Matrix {
+    /// Its matrix in an array with the entries of all factors; those that all elements share are known.
+    pub(super) fn read(&self, array: Array) -> Matrix {
+        self.constant_rows(self.read_all(array))
+    }
+
+    /// Its matrix in such an array, with the entries that all elements share.
+    pub(super) fn read_all(&self, array: Array) -> Matrix {
         let n = self.size();
-        let own = Value::inputs(array, entries)[self.entry..self.entry + n * n].to_vec();
-        self.constant_rows(Matrix { rows: n, columns: n, entries: own })
+        Matrix::of(n, n, |i, j| Value::Input(Source::new(array, self.entry + i * n + j)))
     }
 }
 

@@ -65,6 +65,23 @@ impl Matrix {
         Self { entries: self.entries.iter().map(|&entry| words.multiply(entry, by)).collect(), ..*self }
     }
 
+    /// The determinant by Laplace's expansion: the minors of each set of columns with as many of the first rows. It has no
+    /// quotients.
+    pub(super) fn determinant(&self, words: &mut Words) -> Value {
+        let mut minors = vec![Value::ONE];
+        for set in 1_usize..1 << self.rows {
+            let row = set.count_ones() as usize - 1;
+            let columns = (0..self.rows).filter(|column| set >> column & 1 == 1);
+            let sum = columns.fold(Value::ZERO, |sum, column| {
+                let product = words.multiply(self.at(row, column), minors[set ^ 1 << column]);
+                let is_even = (set >> column).count_ones() % 2 == 1;
+                if is_even { words.add(sum, product) } else { words.subtract(sum, product) }
+            });
+            minors.push(sum);
+        }
+        minors.last().copied().unwrap_or(Value::ONE)
+    }
+
     /// `A⁻¹`. From five rows on it is that by LU without the search for pivots, which near the identity are on the
     /// diagonal.
     pub(super) fn inverse(&self, words: &mut Words) -> Self {

@@ -10,13 +10,16 @@
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!
-//! The files depend on each other in one direction: `step → writer → {actions, solved} → factor → {basis, matrix} →
-//! values`.
+//! The files depend on each other in one direction: `step → limit → writer → {actions, solved} → factor → relations → {basis
+//! → linear, matrix → values}`.
 
 mod actions;
 mod basis;
 mod factor;
+mod limit;
+mod linear;
 mod matrix;
+mod relations;
 mod solved;
 mod step;
 mod values;

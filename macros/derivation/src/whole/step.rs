@@ -3,8 +3,9 @@
 use super::actions::{at_attitude, change};
 use super::basis::Form;
 use super::factor::MatrixFactor;
+use super::limit::Limit;
 use super::matrix::Matrix;
-use super::solved::{Factorisation, Pattern};
+use super::solved::Factorisation;
 use super::values::{Value, Words};
 use super::writer::Writer;
 use super::{MOST_OPERATIONS, StepRefusal};
@@ -80,12 +81,22 @@ pub struct Programs {
     pub safe: Option<Program>,
     /// Of the attitude and of the parameters: the advected parameters.
     pub seen: Program,
-    /// Of the attitude: for each orthogonal factor its distance from the group, and a nearer matrix.
+    /// Of the attitude: for each factor that [is restored](MatrixFactor::is_restored) its distance from the group, and a
+    /// nearer matrix.
     pub restored: Program,
-    /// Of momentum, parameters and advected: the velocity at rest.
+    /// Of the attitude: the sum of the factors' distances from their groups.
+    pub defect: Program,
+    /// Of parameters and advected: the inertia at rest, row by row.
+    pub inertia: Program,
+    /// Of momentum, parameters and advected: the velocity by the inertia at rest; an estimate where the continuous limit isn't
+    /// quadratic.
     pub velocity: Program,
-    /// Of velocity, parameters and advected: the momentum, where the Lagrangian is quadratic.
+    /// Of velocity, parameters and advected: the momentum.
     pub momentum: Program,
+    /// Of the same: the derivative of the momentum by the velocity, where the continuous limit isn't quadratic.
+    pub hessian: Option<Program>,
+    /// Of the same: the energy, J.
+    pub energy: Program,
     /// Of attitude and momentum: the momentum in space.
     pub spatial: Program,
     /// Of advected: the trace of the Jacobian at rest, then its determinants and diagonals.
@@ -134,7 +145,7 @@ impl WholeStep {
             carried: writer.carried,
             dets: (numbers - n * n - n - 2) / 2,
             near: count(|factor| factor.form != Form::Translation),
-            attitudes: count(|factor| factor.form == Form::Rotation),
+            attitudes: count(MatrixFactor::is_restored),
         };
         Ok(Self { sizes, factors: writer.factors, programs })
     }
@@ -142,7 +153,7 @@ impl WholeStep {
 
 impl Writer<'_> {
     fn programs(&self) -> Programs {
-        let [safe, velocity, momentum] = self.at_rest();
+        let Limit { inertia, safe, velocity, momentum, hessian, energy } = self.limit();
         Programs {
             constants: self.staged.programs.constants.clone(),
             target: self.target(),
@@ -152,8 +163,12 @@ impl Writer<'_> {
             safe: (!self.staged.has_constant_inertia).then_some(safe),
             seen: self.seen(),
             restored: self.restored(),
+            defect: self.defect(),
+            inertia,
             velocity,
             momentum,
+            hessian,
+            energy,
             spatial: self.spatial(),
             rest: self.rest(),
         }
@@ -203,7 +218,7 @@ impl Writer<'_> {
         let sum = momentum.iter().chain(&next).fold(Value::ZERO, |sum, &entry| words.add(sum, entry));
         let mut attitude = Vec::new();
         for (factor, d) in self.factors.iter().zip(&d) {
-            let g = factor.read(Array::Attitude, self.entries);
+            let g = factor.read(Array::Attitude);
             attitude.extend(factor.advanced(&mut words, &g, d).entries);
         }
         let history = Value::inputs(Array::History, 2 * n);
@@ -239,25 +254,8 @@ impl Writer<'_> {
         words.added(&momentum, &moved)
     }
 
-    /// Determinants of the inertia, the velocity of a momentum, and the momentum of a velocity.
-    fn at_rest(&self) -> [Program; 3] {
-        let (mut words, n) = (Words::default(), self.dimension());
-        let limit = words.append(&self.staged.programs.at_rest, Value::Input);
-        let inertia = Matrix { rows: n, columns: n, entries: limit[..n * n].to_vec() };
-        let bias = &limit[n * n..n * n + n];
-        let determinants = self.pattern.factorise(&mut words, &inertia).determinants;
-        let whole = Pattern::whole(n);
-        let rest = words.subtracted(&Value::inputs(Array::Momentum, n), bias);
-        let factorisation = whole.factorise(&mut words, &inertia);
-        let velocity = whole.solve(&mut words, &factorisation.factors, factorisation.determinants[0][0], &rest);
-        let xi = Value::inputs(Array::Velocity, n);
-        let image: Vec<Value> = (0..n).map(|i| words.dot(inertia.row(i), &xi)).collect();
-        let momentum = words.added(&image, bias);
-        [words.program(determinants.as_flattened()), words.program(&velocity), words.program(&momentum)]
-    }
-
     fn attitudes(&self) -> Vec<Matrix> {
-        self.factors.iter().map(|factor| factor.read(Array::Attitude, self.entries)).collect()
+        self.factors.iter().map(|factor| factor.read(Array::Attitude)).collect()
     }
 
     fn seen(&self) -> Program {
@@ -285,13 +283,19 @@ impl Writer<'_> {
     }
 
     fn restored(&self) -> Program {
-        let (mut words, mut all) = (Words::default(), Vec::new());
-        for (factor, g) in self.factors.iter().zip(self.attitudes()) {
-            if factor.form == Form::Rotation {
-                all.extend(restored(&mut words, &g));
-            }
-        }
+        let mut words = Words::default();
+        let all = self.factors.iter().zip(self.attitudes());
+        let all: Vec<Value> = all.filter_map(|(factor, g)| factor.restored(&mut words, &g)).flatten().collect();
         words.program(&all)
+    }
+
+    fn defect(&self) -> Program {
+        let mut words = Words::default();
+        let sum = self.factors.iter().fold(Value::ZERO, |sum, factor| {
+            let defect = factor.defect(&mut words, &factor.read_all(Array::Attitude));
+            words.add(sum, defect)
+        });
+        words.program(&[sum])
     }
 
     fn spatial(&self) -> Program {
@@ -322,19 +326,4 @@ fn updated(words: &mut Words, half: &[Value], update: &[Value]) -> Vec<Value> {
     let squares = [words.dot(update, update), words.dot(&next, &next)];
     next.extend(squares);
     next
-}
-
-/// The distance `‖RᵀR − I‖`, and `R + R (I − RᵀR)/2`, a Newton step of the polar decomposition.
-fn restored(words: &mut Words, r: &Matrix) -> Vec<Value> {
-    let n = r.rows;
-    let gram = Matrix::of(n, n, |i, j| words.dot(&r.column(i), &r.column(j)));
-    let on: Vec<Value> = (0..n).map(|i| words.subtract(gram.at(i, i), Value::ONE)).collect();
-    let off: Vec<Value> = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).map(|(i, j)| gram.at(i, j)).collect();
-    let (on, off) = (words.dot(&on, &on), words.dot(&off, &off));
-    let off = words.multiply(off, Value::of(2.0));
-    let square = words.add(on, off);
-    let distance = words.apply(crate::staged::Function::Sqrt, square);
-    let rest = Matrix::identity(n).minus(words, &gram);
-    let change = r.times(words, &rest).scaled(words, Value::of(0.5));
-    [vec![distance], r.plus(words, &change).entries].concat()
 }
