@@ -132,10 +132,16 @@ impl WholeStep {
         if !staged.has_kinetic {
             return Err(StepRefusal::NoKinetic);
         }
+        let dimension: usize = staged.factors.iter().map(|factor| factor.generators.len()).sum();
+        let too_long = StepRefusal::TooLong { most: MOST_OPERATIONS };
+        // An elimination has `n³/3` products alone.
+        if dimension.pow(3) / 3 > MOST_OPERATIONS {
+            return Err(too_long);
+        }
         let writer = Writer::of(staged)?;
         let programs = writer.programs();
         if programs.operations() > MOST_OPERATIONS {
-            return Err(StepRefusal::TooLong { most: MOST_OPERATIONS });
+            return Err(too_long);
         }
         let count = |is_one: fn(&MatrixFactor) -> bool| writer.factors.iter().filter(|factor| is_one(factor)).count();
         let (n, numbers) = (writer.dimension(), programs.iterate.outputs.len());
