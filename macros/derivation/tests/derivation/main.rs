@@ -21,3 +21,4 @@ mod staged;
 mod symbolic;
 mod tour;
 mod verify;
+mod whole;
