@@ -20,6 +20,8 @@ pub use crate::mechanics::{
 pub use crate::methods::{Constraint, Place, Slope};
 pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Numbers, Real, real};
 
+pub use crate::solving::{largest_fraction, six_digits};
+
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
 use crate::groups::{Advected, homogeneous};

@@ -38,6 +38,9 @@ pub enum LateError {
     /// Machine code can't be generated, for this reason.
     #[error("no machine code can be made: {0}")]
     Machine(String),
+    /// There is no step of the declaration as data, for this reason.
+    #[error("{0}")]
+    Step(String),
     /// The step isn't written in C, for this reason.
     #[error("{0}")]
     C(&'static str),

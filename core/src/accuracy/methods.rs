@@ -2,6 +2,7 @@
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
+use core::fmt;
 
 use crate::error::SetupError;
 use crate::mechanics::{Group, Scene};
@@ -10,9 +11,17 @@ use crate::motion::AnyStepper;
 use crate::with::{Method, Scheme, Steppable};
 
 /// A scheme as a constructor from a step.
-pub(super) struct Candidate {
-    pub(super) scheme: Scheme,
-    pub(super) make: Box<dyn Fn(f64) -> Result<AnyStepper, SetupError>>,
+pub struct Candidate {
+    /// The scheme.
+    pub scheme: Scheme,
+    /// The stepper by a step, s.
+    pub make: Box<dyn Fn(f64) -> Result<AnyStepper, SetupError>>,
+}
+
+impl fmt::Debug for Candidate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Candidate").field(&self.scheme).finish()
+    }
 }
 
 impl Candidate {
@@ -39,4 +48,10 @@ where
         Candidate { scheme, make: Box::new(move |h| Method::from(scheme).stepper(scene.clone(), h)) }
     };
     all.map(candidate).collect()
+}
+
+/// The schemes of every group: the own step, which is assumed to be of order 2, and its compositions if it is self-adjoint.
+pub fn of_any_group(is_self_adjoint: bool) -> impl Iterator<Item = Scheme> {
+    let compositions = CompositionScheme::ALL.into_iter().filter(move |scheme| scheme.base() == 2 && is_self_adjoint);
+    [Scheme::Step].into_iter().chain(compositions.map(Scheme::Composition))
 }

@@ -25,8 +25,10 @@ mod search;
 
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
+pub use methods::{Candidate, of_any_group};
 pub use question::{Accuracy, End, Trials};
 
+use alloc::vec::Vec;
 use core::ops::Deref;
 
 use question::Start;
@@ -34,7 +36,7 @@ use question::Start;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scene, Vector};
-use crate::motion::{GroupState, GroupStepper, Integrator as _, Stepper};
+use crate::motion::{AnyStepper, GroupState, GroupStepper, Integrator as _, Stepper};
 use crate::with::{Method, Steppable};
 
 impl<S: Effect> Stepper<S> {
@@ -83,25 +85,56 @@ impl<S: Effect> Stepper<S> {
         S: Scene<Scalar = f64>,
         Group<S>: Steppable<S>,
     {
-        let (Accuracy { tolerance, horizon }, attitude) = (accuracy, attitude.into());
-        if !(tolerance > 0.0 && tolerance <= ladder::LARGEST_ERROR) {
-            return Err(AccuracyError::Tolerance { tolerance });
-        }
-        if !(horizon > 0.0 && horizon.is_finite()) {
-            return Err(AccuracyError::Horizon { horizon });
-        }
+        let (Accuracy { horizon, .. }, attitude) = (accuracy, attitude.into());
         if scene.with_energy(&scene.advected(), 0.0).is_some() {
             let cause = "has a time of its own, whose steps are those of `Stepper::new(…)?.paced()`";
             return Err(SetupError::Parameter { field: "pace", cause }.into());
         }
         let (candidates, start) = (methods::candidates(&scene), Start::new(&attitude, &velocity, horizon));
-        let choice = search::search(&candidates, accuracy, &start)?;
+        let choice = checked(&candidates, accuracy, &start)?;
         let chosen = choice.chosen();
         let stepper = Method::from(chosen.scheme).stepper(scene, chosen.step)?.on_group();
         let stepper = stepper.ok_or(SetupError::Method { cause: "has other states; take another method" })?;
         let start = stepper.start(attitude, velocity)?;
         Ok(AccurateStepper { stepper, start, choice })
     }
+}
+
+/// The choice among these, after a check of the request.
+fn checked(candidates: &[Candidate], accuracy: Accuracy, start: &Start) -> Result<Choice, AccuracyError> {
+    let Accuracy { tolerance, horizon } = accuracy;
+    if !(tolerance > 0.0 && tolerance <= ladder::LARGEST_ERROR) {
+        return Err(AccuracyError::Tolerance { tolerance });
+    }
+    if !(horizon > 0.0 && horizon.is_finite()) {
+        return Err(AccuracyError::Horizon { horizon });
+    }
+    search::search(candidates, accuracy, start)
+}
+
+/// The cheapest of these steppers for an accuracy, as by [`Stepper::for_accuracy`], for states that are numbers.
+///
+/// `beside` is the attitude displaced by [`displacement`], by which the growth of rounding errors is measured.
+///
+/// # Errors
+///
+/// As there.
+pub fn choose(
+    candidates: &[Candidate],
+    accuracy: Accuracy,
+    [attitude, beside]: [&[f64]; 2],
+    velocity: &[f64],
+) -> Result<(AnyStepper, Choice), AccuracyError> {
+    let start = Start::of_numbers([attitude, beside], velocity, accuracy.horizon);
+    let choice = checked(candidates, accuracy, &start)?;
+    let stepper = (candidates[choice.chosen].make)(choice.chosen().step)?;
+    Ok((stepper, choice))
+}
+
+/// A displacement by some roundings, in all directions of an algebra with this many components.
+#[must_use]
+pub fn displacement(components: usize) -> Vec<f64> {
+    question::displacement(components)
 }
 
 /// A stepper chosen for an accuracy by [`Stepper::for_accuracy`].

@@ -60,7 +60,19 @@ pub(super) struct Start {
 /// of a run.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
+/// The components of a displacement by some roundings.
+pub(super) fn displacement(components: usize) -> Vec<f64> {
+    // The last components are the largest, and signs alternate.
+    let weight = |component: usize| (component + 1..components).fold(1.0, |weight: f64, _| weight * -0.8);
+    (0..components).map(|component| weight(component) * ROUNDINGS).collect()
+}
+
 impl Start {
+    pub(super) fn of_numbers([attitude, beside]: [&[f64]; 2], velocity: &[f64], horizon: f64) -> Self {
+        let aside = displacement(velocity.len());
+        Self { attitude: attitude.into(), velocity: velocity.into(), horizon, aside, beside: beside.into() }
+    }
+
     pub(super) fn new<G: LieGroup<Scalar = f64>>(attitude: &G, velocity: &G::Vector, horizon: f64) -> Self {
         let axes = (0..G::DIMENSION).map(G::Vector::axis);
         let aside = axes.fold(G::Vector::zero(), |sum, axis| sum * -0.8 + axis) * ROUNDINGS;

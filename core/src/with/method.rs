@@ -284,19 +284,31 @@ impl Method {
         <S::Group as Steppable<S>>::stepper(self, scene, h)
     }
 
+    /// The composition of a scheme that every group has; none for the own step.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Method`] if the method needs SO(3).
+    pub fn composition(&self) -> Result<Option<CompositionScheme>, SetupError> {
+        match self.scheme {
+            _ if self.compensated || self.substeps > 1 || self.varies() => {
+                refused("needs SO3 where it is compensated, or has substeps or a density; take a composition here")
+            }
+            Scheme::Step => Ok(None),
+            Scheme::Composition(scheme) => Ok(Some(scheme)),
+            _ => refused("is for SO3, where the motion of a free body is known; take a composition here"),
+        }
+    }
+
     /// The stepper by a scheme of any group: the own step, or a composition of it.
     ///
     /// # Errors
     ///
     /// As [`stepper`](Self::stepper).
     pub fn on_any_group<S: Scene<Scalar = f64>>(self, scene: S, h: f64) -> Result<AnyStepper, SetupError> {
-        match self.scheme {
-            _ if self.compensated || self.substeps > 1 || self.varies() => {
-                refused("needs SO3 where it is compensated, or has substeps or a density; take a composition here")
-            }
-            Scheme::Step => Stepper::new(scene, h).map(Stepper::into_any),
-            Scheme::Composition(scheme) => Stepper::composed_if_symmetric(scene, h, scheme).map(Stepper::into_any),
-            _ => refused("is for SO3, where the motion of a free body is known; take a composition here"),
+        match self.composition()? {
+            None => Stepper::new(scene, h).map(Stepper::into_any),
+            Some(scheme) => Stepper::composed_if_symmetric(scene, h, scheme).map(Stepper::into_any),
         }
     }
 
@@ -316,6 +328,12 @@ impl Method {
     }
 
     fn on_so3<S: Scene<Scalar = f64, Group = SO3>>(self, scene: S, h: f64) -> Result<AnyStepper, SetupError> {
+        if scene.with_energy(&scene.advected(), 0.0).is_some() {
+            if self.is_plain() {
+                return Stepper::new(scene, h).and_then(Stepper::paced).map(Stepper::into_any);
+            }
+            return refused("of a scene with a pace is its own step; take the step alone");
+        }
         match (self.scheme, self.floor) {
             (Scheme::Step, Some(_)) if self.compensated || self.substeps > 1 => {
                 refused("with a density is the declared step alone; take neither `compensated` nor `substeps`")
@@ -323,12 +341,6 @@ impl Method {
             (Scheme::Step, Some(floor)) => {
                 let rate = densities::turn(scene.clone(), floor);
                 Stepper::new(scene, h).map(|stepper| stepper.with_density(rate).into_any())
-            }
-            (Scheme::Step, None) if scene.with_energy(&scene.advected(), 0.0).is_some() => {
-                if self.is_plain() {
-                    return Stepper::new(scene, h).and_then(Stepper::paced).map(Stepper::into_any);
-                }
-                refused("with a pace is the declared step alone; take neither `compensated` nor `substeps`")
             }
             (Scheme::Step, None) if self.substeps > 1 && !self.compensated => {
                 Stepper::new(scene, h).map(|stepper| stepper.or_substeps(self.substeps).into_any())
