@@ -2,19 +2,15 @@
 
 use std::sync::Arc;
 
-use liestep::SO3;
-use liestep::Stepper;
-use liestep::accuracy::{Accuracy, AccurateStepper, Choice};
-use liestep::groups::{
-    Advected, CayleyRetraction, Configuration, Given, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2,
-    SU2, SeenFrom,
-};
+use liestep::accuracy::{Accuracy, Candidate, Choice, choose, displacement, of_any_group};
+use liestep::groups::{Advected, CayleyRetraction, Given, LieGroup, Retraction};
 use liestep::mechanics::{Scene as Stepped, WithEitherKinetic};
 use liestep::motion::AnyStepper;
 use liestep::numbers::Entries as _;
 use liestep::with::{Method, Steppable};
-use liestep_late::{Declaration, LateError, Role, Slots};
-use nalgebra::{Matrix4, Point2, Point3, SVector};
+use liestep::{SO3, SetupError, Stepper};
+use liestep_late::{Declaration, LateError, Role, Slots, Whole, WholeComposed, WholeFamily};
+use nalgebra::SVector;
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
 use crate::failure::Failure;
@@ -64,7 +60,8 @@ where
         let attitude = G::from_matrix_unchecked(G::Matrix::from_entries(&mut || entries.next().unwrap_or(f64::NAN)));
         let velocity = G::Vector::from_entries(&mut || components.next().unwrap_or(f64::NAN));
         let sum = self.clone().with_all(numbers)?;
-        let stepper = Stepper::for_accuracy(sum, accuracy, attitude, velocity).map_err(|error| Failure::setup(&error))?;
+        let stepper =
+            Stepper::for_accuracy(sum, accuracy, attitude, velocity).map_err(|error| Failure::setup(&error))?;
         Ok((stepper.any().clone(), stepper.choice().clone()))
     }
 }
@@ -141,6 +138,38 @@ impl Scene {
     }
 }
 
+/// A declaration on any group, whose step is data.
+impl Steps for Arc<WholeFamily<Backend>> {
+    fn stepper(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
+        whole(self, numbers, method, h).map_err(|error| Failure::setup(&error))
+    }
+
+    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<(AnyStepper, Choice), Failure> {
+        let factors = &self.layout().factors;
+        let (attitude, velocity) = (start.attitude(factors)?, start.velocity(factors)?);
+        let candidate = |scheme| {
+            let (family, numbers) = (Self::clone(self), numbers.to_vec());
+            Candidate { scheme, make: Box::new(move |h| whole(&family, &numbers, Method::from(scheme), h)) }
+        };
+        let candidates: Vec<_> = of_any_group(self.declaration().is_self_adjoint).map(candidate).collect();
+        let beside = self.displaced(&attitude, &displacement(velocity.len()));
+        choose(&candidates, accuracy, [&attitude, &beside], velocity).map_err(|error| Failure::setup(&error))
+    }
+}
+
+/// The stepper of a step as data by a method that every group has.
+fn whole(
+    family: &Arc<WholeFamily<Backend>>,
+    numbers: &[f64],
+    method: Method,
+    h: f64,
+) -> Result<AnyStepper, SetupError> {
+    Ok(match method.composition()? {
+        None => AnyStepper::new(Whole::new(family, numbers, h)?),
+        Some(scheme) => AnyStepper::new(WholeComposed::new(family, numbers, h, scheme)?),
+    })
+}
+
 /// The steps of a declaration, if its group and its advected parameters are these types.
 fn typed<G, W>(sum: &'static Declaration, numbers: &[f64]) -> Result<Arc<dyn Steps>, LateError>
 where
@@ -150,11 +179,6 @@ where
 {
     Ok(Arc::new(Sum::<G, W>::of(sum)?.with_all(numbers)?))
 }
-
-/// A vector as the first body sees it, and as the second.
-type First = SeenFrom<0, V<3>>;
-type Second = SeenFrom<1, V<3>>;
-type PlaceOfSecond = Configuration<1, Matrix4<f64>>;
 
 /// The scene of the sum of these terms, with the numbers of all.
 pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<Scene, Failure> {
@@ -183,22 +207,8 @@ pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<S
         first_that_fits! {
             sum;
             SO3: V<3>, Four, WithEnergy;
-            SO2: (V<2>, V<2>);
-            SE2: (V<3>, V<3>, V<3>), Point2<f64>;
-            SE3: (V<4>, V<4>, V<4>, V<4>), Point3<f64>;
-            SU2: ();
-            SL2: (V<2>, V<2>);
-            R1: (V<2>, V<2>);
-            R2: (V<3>, V<3>, V<3>);
-            R3: (V<4>, V<4>, V<4>, V<4>);
-            Heisenberg: ();
-            (SO3, SO3): (First, Second, First, Second, First, Second);
-            (SO3, R3): PlaceOfSecond, (First, PlaceOfSecond, First, First);
         }
     }
-    let known = "on SO3, SO2, SL2, R1, R2 and R3 vectors are advected, on SE2 and SE3 vectors or one point, on (SO3, SO3) \
-                 vectors seen from each, on (SO3, R3) vectors seen from the body and where the other is";
-    let (group, carried) = (sum.group(), sum.carried.len());
-    let message = format!("{group} with these {carried} advected parameters can't be stepped here: {known}");
-    Err(Failure::Of("DeclarationError", message))
+    let family = WholeFamily::<Backend>::of(sum)?;
+    Ok(Scene { steps: Arc::new(family), declaration: sum, numbers: numbers.to_vec(), has_force })
 }

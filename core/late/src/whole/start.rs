@@ -19,6 +19,23 @@ impl<B: Backend<f64>> WholeFamily<B> {
         self.factors.iter().flat_map(|factor| of(factor.size())).collect()
     }
 
+    /// An attitude displaced by small coordinates of the algebra: `g (I + ξ̂)`, for the growth of rounding errors.
+    #[must_use]
+    pub fn displaced(&self, attitude: &[f64], coordinates: &[f64]) -> Vec<f64> {
+        let mut displaced = attitude.to_vec();
+        for (own, factor) in self.declaration.factors.iter().zip(&self.factors) {
+            let rows = factor.size();
+            let g = |row: usize, k: usize| attitude[factor.entry + row * rows + k];
+            for (generator, xi) in own.generators.iter().zip(&coordinates[factor.component..]) {
+                for at in 0..rows * rows {
+                    let moved: f64 = (0..rows).map(|k| g(at / rows, k) * generator[k * rows + at % rows]).sum();
+                    displaced[factor.entry + at] += moved * xi;
+                }
+            }
+        }
+        displaced
+    }
+
     /// The advected parameters at an attitude.
     pub(super) fn seen(&self, numbers: &[f64], attitude: &[f64]) -> Vec<f64> {
         self.outputs(Name::Seen, &[], [(Array::Attitude, attitude), (Array::Parameters, numbers)])
