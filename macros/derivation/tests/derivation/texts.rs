@@ -331,12 +331,26 @@ fn answered(text: &str) -> String {
     answered.collect::<Vec<_>>().join("\n\n") + "\n"
 }
 
+/// Compares a text with its answers, and names the first line that differs, its row and its declaration.
+fn check(text: &str, file: &expect_test::ExpectFile) {
+    let found = answered(text);
+    let mut lines = text.lines().zip(found.lines()).enumerate();
+    let is_updated = std::env::var_os("UPDATE_EXPECT").is_some();
+    if let Some((at, (expected, found))) = lines.find(|(_, (a, b))| a != b).filter(|_| !is_updated) {
+        let above: Vec<&str> = text.lines().take(at).collect();
+        let last = |marks: &[&str]| above.iter().rfind(|line| marks.iter().any(|mark| line.contains(mark)));
+        let [declaration, row] = [last(&["struct "]), last(&["…", "^ "])].map(|line| line.copied().unwrap_or_default());
+        panic!("{}:{}\n{declaration}\n{row}\nexpected {expected}\nfound    {found}", file.path.display(), at + 1);
+    }
+    file.assert_eq(&found);
+}
+
 macro_rules! texts {
     ($($name:ident)*) => {
         $(#[test]
         fn $name() {
             let text = include_str!(concat!("derived/", stringify!($name), ".txt"));
-            expect_file![concat!("derived/", stringify!($name), ".txt")].assert_eq(&answered(text));
+            check(text, &expect_file![concat!("derived/", stringify!($name), ".txt")]);
         })*
 
         #[test]
@@ -347,4 +361,4 @@ macro_rules! texts {
     };
 }
 
-texts! { bodies continuous discretised heavy_top printed right verified }
+texts! { bodies continuous discretised heavy_top printed right tour verified }
