@@ -45,7 +45,9 @@ pub enum SetupError {
         cause: Text,
     },
     /// A list of numbers has another length than the group's.
-    #[error("the {what} has {found} numbers, and {expected} are needed: entries of matrices row by row, or components")]
+    #[error(
+        "the {what} has {found} numbers and not {expected}; give the entries of matrices row by row, and all components"
+    )]
     Length {
         /// The list.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]

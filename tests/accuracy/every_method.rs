@@ -4,14 +4,14 @@ use checks::order::{TOPS, assert_order, counts};
 use checks::random::Random;
 use declarations::{HeavyTop, Motion};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
-use liestep::motion::{AnyState, AnyStepper, Integrator as _};
+use liestep::motion::{GroupState, GroupStepper, Integrator as _};
 use liestep::prelude::*;
 use liestep::with::{Method, Scheme};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 
 /// Steppers of a top by each method, with their names.
-pub(crate) fn all(top: &HeavyTop, h: f64) -> Vec<(String, AnyStepper)> {
+pub(crate) fn all(top: &HeavyTop, h: f64) -> Vec<(String, GroupStepper<SO3, Vector3<f64>>)> {
     let (top, flow) = (|| top.clone(), ExactBody::new(&top.ordinary_inertia()));
     let own = ("step".to_owned(), Stepper::new(top(), h).unwrap().into_any());
     let compensated = ("step, compensated".to_owned(), Stepper::new(top(), h).unwrap().compensated().into_any());
@@ -29,7 +29,8 @@ pub(crate) fn all(top: &HeavyTop, h: f64) -> Vec<(String, AnyStepper)> {
         ("collocation 4".to_owned(), Stepper::collocated::<2>(top(), h).unwrap().into_any()),
         ("collocation 8".to_owned(), Stepper::collocated::<4>(top(), h).unwrap().into_any()),
     ];
-    [own, compensated].into_iter().chain(composed).chain(split).chain(processed).chain(collocated).collect()
+    let all = [own, compensated].into_iter().chain(composed).chain(split).chain(processed).chain(collocated);
+    all.map(|(name, stepper)| (name, stepper.on_group().unwrap())).collect()
 }
 
 #[test]
@@ -41,12 +42,11 @@ fn s5_a_step_of_the_negative_length_is_the_inverse_map() {
         for ((name, there), (_, back)) in all(top, h).into_iter().zip(all(top, -h)) {
             let mut worst = 0.0_f64;
             for _ in 0..10 {
-                let before = there.start_at(SO3::from(random.rotation()), random.vector()).unwrap();
+                let before = there.start(random.rotation(), random.vector()).unwrap();
                 let mut state = before.clone();
                 there.step(&mut state).unwrap();
                 let mut state = back.adopt(&state);
                 back.step(&mut state).unwrap();
-                let [state, before] = [state, before].map(|state| state.typed::<SO3, Vector3<f64>>().unwrap());
                 let attitude = relative(&state.attitude().matrix(), &before.attitude().matrix());
                 let seen = relative(&state.advected(), &before.advected());
                 worst = worst.max(attitude).max(seen).max(relative(&state.momentum(), &before.momentum()));
@@ -82,10 +82,9 @@ fn methods_have_their_orders() {
         for (motion, coarsest) in TOPS.iter().zip(coarsest) {
             assert_order((name, order), (motion, 10.0), &counts(*coarsest, ratio, 5), |motion, h, steps| {
                 let (_, stepper) = all(&motion.top, h).into_iter().find(|(own, _)| own == name).unwrap();
-                let mut state = stepper.start_at(SO3::from(motion.attitude), motion.velocity).unwrap();
+                let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
                 stepper.run(&mut state, steps.into()).unwrap();
-                let motion = state.typed::<SO3, ()>().unwrap();
-                (motion.attitude(), Vector3::from_column_slice(&stepper.velocity(&state)))
+                (state.attitude(), stepper.velocity(&state))
             });
         }
     }
@@ -97,17 +96,15 @@ fn methods_have_their_orders() {
 fn methods_keep_the_momenta() {
     let motion = Motion::looping();
     for (name, stepper) in all(&motion.top, 0.04) {
-        let mut state = stepper.start_at(SO3::from(motion.attitude), motion.velocity).unwrap();
-        let kept = |state: &AnyState| {
-            let state = state.typed::<SO3, Vector3<f64>>().unwrap();
+        let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
+        let kept = |state: &GroupState<SO3, Vector3<f64>>| {
             [state.momentum_along(&Vector3::z()), state.momentum().z, state.advected().norm()]
         };
         let before = kept(&state);
         stepper.run(&mut state, 200_000).unwrap();
         let off = kept(&state).iter().zip(before).map(|(now, before)| (now / before - 1.0).abs()).fold(0.0, f64::max);
-        let orthogonality = state.typed::<SO3, ()>().unwrap().orthogonality_defect();
-        println!("{name}: {off:.1e}, orthogonality {orthogonality:.1e}");
-        assert!(off < 2e-12 && orthogonality < 2e-12, "{name}: {off:e}");
+        println!("{name}: {off:.1e}, orthogonality {:.1e}", state.orthogonality_defect());
+        assert!(off < 2e-12 && state.orthogonality_defect() < 2e-12, "{name}: {off:e}");
     }
 }
 
@@ -120,7 +117,7 @@ fn methods_by_their_texts_are_the_typed_ones() {
         let method: Method = name.parse().unwrap();
         assert_eq!(method.to_string(), name);
         let chosen = method.stepper(top.clone(), 0.04).unwrap();
-        let ends = [typed, chosen].map(|stepper| {
+        let ends = [typed.any().clone(), chosen].map(|stepper| {
             let mut state = stepper.start_at(SO3::from(motion.attitude), motion.velocity).unwrap();
             stepper.run(&mut state, 20).unwrap();
             state.numbers().iter().map(|number| number.to_bits()).collect::<Vec<_>>()

@@ -4,9 +4,10 @@
 
 use checks::random::Random;
 use declarations::{HeavyTop, Motion};
+use liestep::groups::Advected;
 use liestep::mechanics::{DiscreteLagrangian, Effect, Term};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme, SymmetricBody};
-use liestep::motion::{AnyMotion, AnyStepper, Integrator as _, Plan, Remedy, StepReport};
+use liestep::motion::{GroupStepper, Integrator as _, Plan, Remedy, StepReport};
 use liestep::prelude::*;
 use liestep::recording::{Recorder, Table};
 use liestep::with::{Checkpoint, CheckpointError, Compensable};
@@ -175,9 +176,8 @@ where
 
 /// Checks that a recorder receives the steps of `run`, to the bit, and that between two steps there is a path from the
 /// one to the other in the group, with the vertical momentum conserved.
-fn assert_is_observed(name: &str, stepper: &AnyStepper) {
-    let typed = |motion: &AnyMotion| motion.typed::<SO3, ()>().unwrap();
-    let start = stepper.start_at(attitude(), VELOCITY).unwrap();
+fn assert_is_observed<A: Advected<SO3>>(name: &str, stepper: &GroupStepper<SO3, A>) {
+    let start = stepper.start(attitude(), VELOCITY).unwrap();
     let (mut observed, mut stepped) = (start.clone(), start.clone());
     let mut recorder = Recorder::new(stepper, Table::new());
     let ended = stepper.observed(&mut observed).every(7, |now| recorder.record(now)).until(0.28).unwrap();
@@ -185,7 +185,7 @@ fn assert_is_observed(name: &str, stepper: &AnyStepper) {
     let table = recorder.finish().unwrap();
     for row in table.rows() {
         let velocity = stepper.velocity(&stepped);
-        let numbers = [stepper.time(&stepped), velocity[0], velocity[1], velocity[2], stepper.energy(&stepped)];
+        let numbers = [stepper.time(&stepped), velocity.x, velocity.y, velocity.z, stepper.energy(&stepped)];
         let recorded = [row[0], row[5], row[6], row[7], row[11]];
         assert_eq!(recorded.map(f64::to_bits), numbers.map(f64::to_bits), "{name}: recorded");
         stepper.run(&mut stepped, 7).unwrap();
@@ -194,29 +194,28 @@ fn assert_is_observed(name: &str, stepper: &AnyStepper) {
 
     let mut next = start.clone();
     stepper.step(&mut next).unwrap();
-    let at = |fraction| typed(&stepper.part(&start, fraction).unwrap());
-    let (begin, end) = (typed(&start), typed(&next));
+    let at = |fraction| stepper.part(&start, fraction).unwrap();
     let distance = |a: SO3, b: SO3| (a.as_matrix() - b.as_matrix()).norm();
-    assert_eq!((at(0.0).attitude(), at(0.0).momentum()), (begin.attitude(), begin.momentum()), "{name}: at the start");
-    assert!(distance(at(1.0).attitude(), end.attitude()) < 1e-14, "{name}: at the end");
-    assert!(relative(&at(1.0).momentum(), &end.momentum()) < 1e-13, "{name}: at the end");
-    let vertical = begin.momentum_along(&Vector3::z());
+    assert_eq!((at(0.0).attitude(), at(0.0).momentum()), (start.attitude(), start.momentum()), "{name}: at the start");
+    assert!(distance(at(1.0).attitude(), next.attitude()) < 1e-14, "{name}: at the end");
+    assert!(relative(&at(1.0).momentum(), &next.momentum()) < 1e-13, "{name}: at the end");
+    let vertical = start.momentum_along(&Vector3::z());
     for fraction in [-1.0, -0.3, 1e-40, 1e-9, 0.1, 0.5, 0.9] {
         let between = at(fraction);
         assert!(between.orthogonality_defect() < 4e-15, "{name}: at {fraction}");
         assert!((between.momentum_along(&Vector3::z()) - vertical).abs() < 2e-14, "{name}: at {fraction}");
         // The path has the velocity of the motion.
-        let turned = distance(between.attitude(), begin.attitude()) / std::f64::consts::SQRT_2;
+        let turned = distance(between.attitude(), start.attitude()) / std::f64::consts::SQRT_2;
         let expected = VELOCITY.norm() * 0.01 * f64::abs(fraction);
         assert!((turned - expected).abs() < 0.1 * expected + 1e-15, "{name}: turned by {turned} at {fraction}");
     }
-    let later = typed(&stepper.state_at(&start, 0.107).unwrap());
+    let later = stepper.state_at(&start, 0.107).unwrap();
     stepper.run(&mut next, 9).unwrap();
-    let part = typed(&stepper.part(&next, 0.7).unwrap());
+    let part = stepper.part(&next, 0.7).unwrap();
     // Runs of a splitting merge the flows at the ends of two steps.
     assert!(distance(later.attitude(), part.attitude()) < 1e-9, "{name}: later");
-    let back = typed(&stepper.state_at(&stepper.adopt(&next), -0.1).unwrap());
-    assert!(distance(back.attitude(), begin.attitude()) < 1e-9, "{name}: back");
+    let back = stepper.state_at(&stepper.adopt(&next), -0.1).unwrap();
+    assert!(distance(back.attitude(), start.attitude()) < 1e-9, "{name}: back");
 }
 
 /// Checks all functions that every plan has.
@@ -239,7 +238,7 @@ where
     P: Plan<S, Kept: 'static> + Clone + 'static,
 {
     assert_all(name, stepper, own);
-    assert_is_observed(name, &stepper.clone().or_substeps(2).into_any());
+    assert_is_observed(name, &stepper.clone().or_substeps(2).into_any().on_group::<SO3, S::Advected>().unwrap());
     let substeps = stepper.clone().or_substeps(8);
     assert_all(&format!("{name}, or substeps"), &substeps, own);
     let (mut plain, mut other) = (started(stepper), started(&substeps));

@@ -402,6 +402,7 @@ fn a_row_has_the_bits_of_velocity_and_energy() {
     let (p, anchor) = (nalgebra::Point2::new(0.3, 0.1), nalgebra::Point2::new(2.0, -1.0));
     let plate = Stepper::new(TetheredPlate { J, k: 3.0, length: 0.5, p, anchor }, 0.01).unwrap();
     let (heavy, _) = top(0.01);
+    let any = heavy.clone().into_any().on_group::<SO3, Vector3<f64>>().unwrap();
     let gauss = CotangentGauss::<_, 2, 3>::new(HeavyTop::thesis(), 0.05).unwrap();
     let composed = Stepper::composed(HeavyTop::thesis(), 0.01, liestep::methods::CompositionScheme::SUZUKI_4).unwrap();
     for _ in 0..50 {
@@ -410,6 +411,7 @@ fn a_row_has_the_bits_of_velocity_and_energy() {
         assert_row_is_both(&gyrostat, &gyrostat.start(attitude, velocity).unwrap());
         assert_row_is_both(&sliding, &sliding.start(attitude, velocity).unwrap());
         assert_row_is_both(&plate, &plate.start(SE2::identity(), velocity).unwrap());
+        assert_row_is_both(&any, &any.start(attitude, velocity).unwrap());
         assert_row_is_both(&heavy, &heavy.start(attitude, velocity).unwrap());
         assert_row_is_both(&gauss, &gauss.start(attitude, velocity).unwrap());
         assert_row_is_both(&composed, &composed.start(attitude, velocity).unwrap());

@@ -73,6 +73,10 @@ const fn name(array: Array) -> &'static str {
         Array::Half => "half",
         Array::Velocity => "velocity",
         Array::Target => "target",
+        Array::Attitude => "attitude",
+        Array::Momentum => "momentum",
+        Array::History => "history",
+        Array::Factors => "factors",
     }
 }
 

@@ -41,7 +41,7 @@ pub(crate) trait Steps: Send + Sync {
     fn stepper(&self, numbers: &[f64], method: (Method, f64)) -> Result<AnyStepper, Failure>;
 
     /// The stepper by the method and the step that are the cheapest for an accuracy.
-    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<AccurateStepper, Failure>;
+    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<(AnyStepper, Choice), Failure>;
 }
 
 impl<G, W> Steps for Sum<G, W>
@@ -56,7 +56,7 @@ where
         method.stepper(sum, h).map_err(|error| Failure::setup(&error))
     }
 
-    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<AccurateStepper, Failure> {
+    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<(AnyStepper, Choice), Failure> {
         let layout = G::factors();
         let (attitude, velocity) = (start.attitude(&layout)?, start.velocity(&layout)?);
         let read = |numbers: &[f64]| numbers.to_vec().into_iter();
@@ -64,7 +64,8 @@ where
         let attitude = G::from_matrix_unchecked(G::Matrix::from_entries(&mut || entries.next().unwrap_or(f64::NAN)));
         let velocity = G::Vector::from_entries(&mut || components.next().unwrap_or(f64::NAN));
         let sum = self.clone().with_all(numbers)?;
-        Stepper::for_accuracy(sum, accuracy, attitude, velocity).map_err(|error| Failure::setup(&error))
+        let stepper = Stepper::for_accuracy(sum, accuracy, attitude, velocity).map_err(|error| Failure::setup(&error))?;
+        Ok((stepper.any().clone(), stepper.choice().clone()))
     }
 }
 
@@ -110,9 +111,8 @@ impl Scene {
         course: &Course,
     ) -> Result<(Recorded, Choice), Failure> {
         let accuracy = Accuracy { tolerance, horizon: course.until };
-        let stepper = self.steps.accurate(&self.numbers, accuracy, start)?;
-        let recorded = record(&stepper, stepper.start(), course)?;
-        Ok((recorded, stepper.choice().clone()))
+        let (stepper, choice) = self.steps.accurate(&self.numbers, accuracy, start)?;
+        Ok((record(&stepper, started(&stepper, start)?, course)?, choice))
     }
 
     /// The members of an ensemble.

@@ -32,9 +32,10 @@ use core::ops::Deref;
 use question::Start;
 
 use crate::error::{SetupError, StepError};
+use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scene, Vector};
-use crate::motion::{AnyState, AnyStepper, Integrator as _, Stepper};
-use crate::with::Steppable;
+use crate::motion::{GroupState, GroupStepper, Integrator as _, Stepper};
+use crate::with::{Method, Steppable};
 
 impl<S: Effect> Stepper<S> {
     /// The cheapest method for an accuracy, with the longest sufficient step for the motion from this attitude (body to
@@ -77,12 +78,12 @@ impl<S: Effect> Stepper<S> {
         accuracy: Accuracy,
         attitude: impl Into<Group<S>>,
         velocity: Vector<S>,
-    ) -> Result<AccurateStepper, AccuracyError>
+    ) -> Result<AccurateStepper<Group<S>, S::Advected>, AccuracyError>
     where
         S: Scene<Scalar = f64>,
         Group<S>: Steppable<S>,
     {
-        let Accuracy { tolerance, horizon } = accuracy;
+        let (Accuracy { tolerance, horizon }, attitude) = (accuracy, attitude.into());
         if !(tolerance > 0.0 && tolerance <= ladder::LARGEST_ERROR) {
             return Err(AccuracyError::Tolerance { tolerance });
         }
@@ -93,28 +94,30 @@ impl<S: Effect> Stepper<S> {
             let cause = "has a time of its own, whose steps are those of `Stepper::new(…)?.paced()`";
             return Err(SetupError::Parameter { field: "pace", cause }.into());
         }
-        let (candidates, start) = (methods::candidates(&scene), Start::new(&attitude.into(), &velocity, horizon));
+        let (candidates, start) = (methods::candidates(&scene), Start::new(&attitude, &velocity, horizon));
         let choice = search::search(&candidates, accuracy, &start)?;
-        let stepper = (candidates[choice.chosen].make)(choice.chosen().step)?;
-        let start = stepper.start(&start.attitude, &start.velocity)?;
+        let chosen = choice.chosen();
+        let stepper = Method::from(chosen.scheme).stepper(scene, chosen.step)?.on_group();
+        let stepper = stepper.ok_or(SetupError::Method { cause: "has other states; take another method" })?;
+        let start = stepper.start(attitude, velocity)?;
         Ok(AccurateStepper { stepper, start, choice })
     }
 }
 
 /// A stepper chosen for an accuracy by [`Stepper::for_accuracy`].
 ///
-/// The stepper has the steps, times, velocities and energies of the [`AnyStepper`] inside.
+/// The stepper has the steps, times, velocities and energies of the [`GroupStepper`] inside.
 #[derive(Debug)]
-pub struct AccurateStepper {
-    stepper: AnyStepper,
-    start: AnyState,
+pub struct AccurateStepper<G: LieGroup, A> {
+    stepper: GroupStepper<G, A>,
+    start: GroupState<G, A>,
     choice: Choice,
 }
 
-impl AccurateStepper {
+impl<G: LieGroup<Scalar = f64>, A: Advected<G>> AccurateStepper<G, A> {
     /// The start of the motion for which the accuracy was requested.
     #[must_use]
-    pub fn start(&self) -> AnyState {
+    pub fn start(&self) -> GroupState<G, A> {
         self.start.clone()
     }
 
@@ -124,7 +127,7 @@ impl AccurateStepper {
     /// # Errors
     ///
     /// [`StepError`] of the method; none for the motion from [`start`](Self::start).
-    pub fn run(&self, state: &mut AnyState) -> Result<(), StepError> {
+    pub fn run(&self, state: &mut GroupState<G, A>) -> Result<(), StepError> {
         self.stepper.run(state, self.choice.steps.saturating_sub(state.steps())).map(|_| ())
     }
 
@@ -135,10 +138,10 @@ impl AccurateStepper {
     }
 }
 
-impl Deref for AccurateStepper {
-    type Target = AnyStepper;
+impl<G: LieGroup, A> Deref for AccurateStepper<G, A> {
+    type Target = GroupStepper<G, A>;
 
-    fn deref(&self) -> &AnyStepper {
+    fn deref(&self) -> &GroupStepper<G, A> {
         &self.stepper
     }
 }

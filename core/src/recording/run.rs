@@ -10,9 +10,12 @@ use super::error::{Reason, RunError, RunReport};
 use super::event::{Event, Watch, crossings, happen, look_first, next_length};
 use super::observer::{Observer, show, stopped, unless_it_goes_on};
 use crate::error::StepError;
+use crate::groups::{Advected, LieGroup};
 use crate::mechanics::Effect;
 use crate::methods::CotangentGauss;
-use crate::motion::{Answer, AnyState, AnyStepper, Integrator, Moment, Plan, StateOf, Stepper};
+use crate::motion::{
+    Answer, AnyState, AnyStepper, GroupState, GroupStepper, Integrator, Moment, Plan, StateOf, Stepper,
+};
 use crate::numbers::{real, reported};
 
 roots!();
@@ -100,6 +103,13 @@ struct TimedObserver<'a, I: Integrator> {
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// A run from this state with observers; see [`Run`].
     pub fn observed<'a>(&'a self, state: &'a mut StateOf<S, P>) -> Run<'a, Self> {
+        Run::new(self, state)
+    }
+}
+
+impl<G: LieGroup<Scalar = f64>, A: Advected<G>> GroupStepper<G, A> {
+    /// A run with observers, as by [`Stepper::observed`].
+    pub fn observed<'a>(&'a self, state: &'a mut GroupState<G, A>) -> Run<'a, Self> {
         Run::new(self, state)
     }
 }

@@ -307,10 +307,10 @@ impl Method {
         P: Plan<S, Kept: 'static> + Compensable + 'static,
     {
         if self.substeps > 1 {
-            return refused("has no substeps, which go with the declared step alone and without compensated sums");
+            return refused("has substeps with the declared step alone and without compensated sums; take one of both");
         }
         if self.varies() {
-            return refused("has no density, which is around the declared step alone");
+            return refused("has a density around the declared step alone; take `step`");
         }
         Ok(if self.compensated { stepper.compensated().into_any() } else { stepper.into_any() })
     }
@@ -318,7 +318,7 @@ impl Method {
     fn on_so3<S: Scene<Scalar = f64, Group = SO3>>(self, scene: S, h: f64) -> Result<AnyStepper, SetupError> {
         match (self.scheme, self.floor) {
             (Scheme::Step, Some(_)) if self.compensated || self.substeps > 1 => {
-                refused("with a density is around the declared step alone; leave `compensated` and `substeps` out")
+                refused("with a density is the declared step alone; take neither `compensated` nor `substeps`")
             }
             (Scheme::Step, Some(floor)) => {
                 let rate = densities::turn(scene.clone(), floor);
@@ -328,22 +328,22 @@ impl Method {
                 if self.is_plain() {
                     return Stepper::new(scene, h).and_then(Stepper::paced).map(Stepper::into_any);
                 }
-                refused("with a pace is the declared step alone; leave `compensated` and `substeps` out")
+                refused("with a pace is the declared step alone; take neither `compensated` nor `substeps`")
             }
             (Scheme::Step, None) if self.substeps > 1 && !self.compensated => {
                 Stepper::new(scene, h).map(|stepper| stepper.or_substeps(self.substeps).into_any())
             }
             (Scheme::Step, None) => self.wrapped(Stepper::new(scene, h)?),
             (Scheme::Composition(scheme), _) => self.wrapped(Stepper::composed_if_symmetric(scene, h, scheme)?),
-            (Scheme::Collocation(_), _) if self.compensated || self.substeps > 1 || self.varies() => {
-                refused("of collocation compensates its sums by itself, and has neither substeps nor a density")
-            }
+            (Scheme::Collocation(_), _) if self.compensated || self.substeps > 1 || self.varies() => refused(
+                "of collocation compensates its sums by itself, and has neither substeps nor a density; take it alone",
+            ),
             (Scheme::Collocation(Stages::Four), _) => Stepper::collocated::<2>(scene, h).map(Stepper::into_any),
             (Scheme::Collocation(Stages::Eight), _) => Stepper::collocated::<4>(scene, h).map(Stepper::into_any),
             _ => {
                 let Ok(inertia) = Inertia::new(scene.inertia(&scene.advected())) else {
                     return refused(
-                        "is for the inertia of a body: positive, and no moment above the sum of the others",
+                        "is for the inertia of a body; give a positive one, no moment of which is above the sum of the others",
                     );
                 };
                 match SymmetricBody::new(&inertia) {
@@ -363,7 +363,9 @@ impl Method {
         match self.scheme {
             Scheme::Splitting(scheme) => self.wrapped(Stepper::split(scene, h, flow, scheme)?),
             Scheme::Processed(scheme) => self.wrapped(Stepper::processed(scene, h, flow, scheme)?),
-            _ if S::parts(&scene.constants(1.0)).kick_before => refused("is for a body without a potential"),
+            _ if S::parts(&scene.constants(1.0)).kick_before => {
+                refused("is for a body without a potential; take a splitting")
+            }
             _ => self.wrapped(Stepper::split(scene, h, flow, SplittingScheme::STRANG)?),
         }
     }

@@ -39,10 +39,10 @@ where
                 Some(scheme) => Stepper::composed(scene.clone(), h, scheme).unwrap().into_any(),
                 None => Stepper::new(scene.clone(), h).unwrap().into_any(),
             };
-            let mut state = stepper.start_at(attitude, velocity).unwrap();
+            let stepper = stepper.on_group::<G, S::Advected>().unwrap();
+            let mut state = stepper.start(attitude, velocity).unwrap();
             stepper.run(&mut state, steps.into()).unwrap();
-            let motion = state.typed::<G, S::Advected>().unwrap();
-            apart(&system.state(&motion.attitude(), &motion.momentum()), &exact)
+            apart(&system.state(&state.attitude(), &state.momentum()), &exact)
         });
         (coarse / fine).ln() / (f64::from(steps[1]) / f64::from(steps[0])).ln()
     };
@@ -64,8 +64,8 @@ where
         stepper.run(&mut state).unwrap();
         assert!(stepper.choice().trials <= 60.0, "{}", stepper.choice());
         // The error as `Accuracy` defines it.
-        let attitudes = apart(state.attitude(), &exact_attitude) / norm(&exact_attitude);
-        let error = attitudes.hypot(apart(&stepper.velocity(&state), &exact_velocity) / scale);
+        let attitudes = apart(&entries(&state.attitude().matrix()), &exact_attitude) / norm(&exact_attitude);
+        let error = attitudes.hypot(apart(&entries(&stepper.velocity(&state)), &exact_velocity) / scale);
         assert!(error <= tolerance, "{error:e}\n{}", stepper.choice());
     }
 }

@@ -145,7 +145,7 @@ fn all_commands_have_orbits() {
             "[picture]\naxis = [1, 0, 0]\npanels = [\"tilt\", \"energy\"]\n[sweep]\n{orbit}.eccentricity = [0.0, 0.05]\n\
              [ensemble]\nmembers = 3\nevery = 390\ndraw.{orbit}.phase = {{ from = \"40 deg\", to = \"40.0001 deg\" }}\n"
         );
-    let event = "[[event]]\nname = \"sideways\"\naxis_1 = 0\n";
+    let event = "[[event]]\nname = \"sideways\"\naxis_x = 0\n";
     fs::write(folder.join("events.toml"), text.replace("\"energy\", \"spatial", "\"spatial") + event).unwrap();
     printed(&folder, &["run", "events.toml", "--csv", "--out", "."]);
     let events = fs::read_to_string(folder.join("events.events.csv")).unwrap();

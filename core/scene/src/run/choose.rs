@@ -287,7 +287,9 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
     let mut run = if let Some((file, step)) = refined(file, &choice) {
         by(&by_steps(&file, step)?, &file, FEWEST, listeners)?
     } else {
-        make(&*stepper, stepper.start(), course(file, choice.steps), sample, watches(file), listeners)?
+        let any = stepper.any();
+        let state = any.start_at(SO3::from(file.start.attitude), file.start.velocity).map_err(Stop::Start)?;
+        make(any, state, course(file, choice.steps), sample, watches(file), listeners)?
     };
     run.choice = Some(choice);
     Ok(run)

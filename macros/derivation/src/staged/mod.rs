@@ -57,17 +57,26 @@ pub enum Array {
     Velocity,
     /// The right side `a` of the momentum equation.
     Target,
+    /// The attitude, or the configuration.
+    Attitude,
+    /// The momentum.
+    Momentum,
+    /// Half the coordinates of the last increment, and their difference to those before.
+    History,
+    /// The determinants of a Jacobian, and its factors.
+    Factors,
 }
 
 impl Array {
     /// The number of arrays.
-    pub const COUNT: usize = 12;
+    pub const COUNT: usize = 16;
 
     /// All arrays, in order.
     #[rustfmt::skip]
     pub const ALL: [Self; Self::COUNT] = [
         Self::Step, Self::Parameters, Self::Constants, Self::Advected, Self::Next, Self::Element, Self::Increment,
-        Self::Inverse, Self::InverseIncrement, Self::Half, Self::Velocity, Self::Target,
+        Self::Inverse, Self::InverseIncrement, Self::Half, Self::Velocity, Self::Target, Self::Attitude, Self::Momentum,
+        Self::History, Self::Factors,
     ];
 }
 

@@ -17,3 +17,4 @@ mod staged;
 mod symbolic;
 mod texts;
 mod verify;
+mod whole;
