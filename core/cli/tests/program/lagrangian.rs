@@ -78,7 +78,7 @@ fn a_force_of_its_own() {
     assert!(printed(&folder, &["ensemble", "drawn.toml", "--out", "."]).contains('4'));
     // A step of all terms is one text.
     let c = printed(&folder, &["derive", "drawn.toml", "--c"]);
-    assert!(c.starts_with("/* A step of PrincipalBody + Gravity + Force on SO(3)."), "{c}");
+    assert!(c.starts_with("/* A step of PrincipalBody + Gravity + Force on SO3."), "{c}");
     assert!(printed(&folder, &["derive", "drawn.toml"]).contains("gravity\n"));
 }
 

@@ -63,8 +63,7 @@ impl<B: Backend<f64>> WholeFamily<B> {
         if declaration.energy.is_some() {
             return Err(LateError::Pace);
         }
-        let WholeStep { sizes, factors, programs } =
-            WholeStep::of(declaration).map_err(|refusal| LateError::Step(refusal.to_string()))?;
+        let WholeStep { sizes, factors, programs } = WholeStep::of(declaration)?;
         let all: [Option<&Program>; 16] = [
             Some(&programs.constants),
             Some(&programs.target),

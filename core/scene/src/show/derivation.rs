@@ -92,7 +92,7 @@ impl SceneFile {
     ///
     /// # Errors
     ///
-    /// The sum can't be written in this form, see [`LateError::C`].
+    /// The sum can't be written in this form, see [`LateError::Step`].
     pub fn written(&self, form: Form) -> Result<String, LateError> {
         let listed = self.terms().filter_map(|name| declaration(&name)).map(Declaration::parse);
         let own = self.own().map(|one| Ok(one.declaration));

@@ -14,7 +14,9 @@ pub(super) type Generators = Vec<Vec<f64>>;
 
 fn unit(n: usize, entries: &[(usize, usize, f64)]) -> Vec<f64> {
     let mut matrix = vec![0.0; n * n];
-    entries.iter().for_each(|&(i, j, x)| matrix[i * n + j] = x);
+    for &(i, j, x) in entries {
+        matrix[i * n + j] = x;
+    }
     matrix
 }
 

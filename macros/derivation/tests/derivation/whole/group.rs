@@ -1,5 +1,7 @@
 //! Increments, inverses, coadjoint actions and the nine actions of any group, and what generators tell of it.
 
+use std::slice::from_ref;
+
 use liestep_derivation::judged::verify::number::Number;
 use liestep_derivation::judged::verify::residue::Residue;
 use liestep_derivation::judged::verify::value::Value;
@@ -13,7 +15,7 @@ use super::common::{
 };
 
 fn form_of(generators: &Generators) -> (Form, Chart) {
-    let factor = WholeStep::of(&declared(&[generators.clone()], Vec::new())).expect("a step").factors.remove(0);
+    let factor = WholeStep::of(&declared(from_ref(generators), Vec::new())).expect("a step").factors.remove(0);
     (factor.form, factor.chart)
 }
 
@@ -81,7 +83,7 @@ fn determinant(g: &Value<Residue>) -> Residue {
 /// From an element of the group, which steps have made, to another.
 fn moved(name: &str, generators: &Generators, seed: u64) -> (Moving<Residue>, Value<Residue>, Value<Residue>) {
     let mut next = Residue::stream(seed);
-    let staged = declared(&[generators.clone()], Vec::new());
+    let staged = declared(from_ref(generators), Vec::new());
     let start = Moving::of(&staged, &mut next);
     let g = start.finished()[..start.step.sizes.entries].to_vec();
     let moving = Moving::of(&staged, next).with(Array::Attitude, &g);
@@ -138,7 +140,16 @@ fn momentum_is_carried_by_the_coadjoint_action() {
 /// Each action on parameters in space, seen from an attitude, and carried by an increment.
 #[test]
 fn nine_actions() {
-    let actions = [
+    for first in [affine(2), named("SE2"), named("Heisenberg"), named("R2")] {
+        are_as_by_hand(&[first, named("SE2"), sl3()], true);
+    }
+    for first in [named("SO3"), sl3()] {
+        are_as_by_hand(&[first, affine(2), so(3)], false);
+    }
+}
+
+fn are_as_by_hand(factors: &[Generators], has_points: bool) {
+    let mut actions = vec![
         (Action::Covector(0), (3, 1)),
         (Action::Contravariant(0), (3, 1)),
         (Action::Point(0), (2, 1)),
@@ -149,8 +160,8 @@ fn nine_actions() {
         (Action::Configuration(2), (3, 3)),
         (Action::Given, (2, 1)),
     ];
-    let factors = [affine(2), named("SE2"), sl3()];
-    let staged = declared(&factors, carried(&actions));
+    actions.retain(|(action, _)| has_points || !matches!(action, Action::Point(_)));
+    let staged = declared(factors, carried(&actions));
     let mut next = Residue::stream(7);
     let start = Moving::of(&staged, &mut next);
     let g = start.finished()[..start.step.sizes.entries].to_vec();
@@ -217,12 +228,26 @@ fn is_translation(name: &str, at: usize) -> bool {
     at / n < rows && at % n >= rows
 }
 
+/// A reflection is orthogonal, too, and isn't in the group.
+#[test]
+fn reflections_are_not_rotations() {
+    for (name, generators) in groups().into_iter().filter(|(name, _)| name.starts_with("SO") || name.starts_with("SE"))
+    {
+        let mut random = Random::new(29);
+        let moving = Moving::of(&declared(&[generators], Vec::new()), || 0.3 * random.signed());
+        let mut g = moving.increments().remove(0);
+        (0..g.rows).for_each(|j| g.entries[j] = -g.entries[j]);
+        let defect = moving.numbers.with(Array::Attitude, &g.entries).run(&moving.step.programs.defect)[0];
+        assert!(defect > 2.0 - 1e-14 && (defect < 2.0 + 1e-14 || name != "SO3"), "{name}: {defect}");
+    }
+}
+
 /// A step of the polar decomposition, and of that of another form, squares the distance from the group.
 #[test]
 fn attitudes_are_restored() {
     let mut restored = Vec::new();
     for (name, generators) in groups() {
-        let staged = declared(&[generators.clone()], Vec::new());
+        let staged = declared(from_ref(&generators), Vec::new());
         let mut random = Random::new(13);
         let moving = Moving::of(&staged, || 0.3 * random.signed());
         let mut g = moving.increments().remove(0);
