@@ -132,16 +132,16 @@ fn has_own_functions(program: &Program) -> bool {
 ///
 /// # Errors
 ///
-/// [`LateError::C`]: the declaration is a force, on another group, advects other things than covectors, or its solve
-/// goes without the Jacobian; [`LateError::Function`]: it needs functions that C doesn't have.
+/// [`LateError::C`]: the declaration is a force, on another group, advects other things than covectors, or has no
+/// kinetic part; [`LateError::Function`]: it needs functions that C doesn't have.
 pub fn c(declaration: &Declaration) -> Result<String, LateError> {
     let is_so3 = declaration.group() == "SO3" && !declaration.in_increment;
     let moves_simply = |action| matches!(action, Action::Covector(_) | Action::Given);
     if !is_so3 || !declaration.carried.iter().all(|carried| moves_simply(carried.action)) {
         return Err(LateError::C("a step is written in C on `SO3`, with vectors that are advected or given"));
     }
-    if !declaration.has_kinetic || declaration.is_expensive {
-        return Err(LateError::C("a step is written in C of a Lagrangian with a kinetic part and a cheap Jacobian"));
+    if !declaration.has_kinetic {
+        return Err(LateError::C("a step is written in C of a Lagrangian with a kinetic part"));
     }
     let mut text = HEAD.replace("NAME", &declaration.name);
     let parameters = declaration.parameters.iter().map(|parameter| (parameter.name.as_str(), parameter.kind.len()));

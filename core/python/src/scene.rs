@@ -9,7 +9,7 @@ use liestep::groups::{
     Advected, CayleyRetraction, Configuration, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2, SU2,
     SeenFrom,
 };
-use liestep::mechanics::{Scene as Stepped, WithEitherKinetic};
+use liestep::mechanics::{Scene as Stepped, WithKinetic};
 use liestep::motion::AnyStepper;
 use liestep_late::{Declaration, LateError, Role, Slots};
 use nalgebra::{Matrix4, Point2, Point3};
@@ -27,7 +27,7 @@ type Backend = liestep_machine::Machine;
 type Backend = liestep_late::Interpreter;
 
 pub(crate) type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
-type Sum<G, W> = Late<G, W, WithEitherKinetic>;
+type Sum<G, W> = Late<G, W, WithKinetic>;
 
 /// What a program that is running has declared.
 pub(crate) trait Scene: Send + Sync {

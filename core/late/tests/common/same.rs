@@ -3,7 +3,7 @@
 use liestep::Stepper;
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Regular, WithEitherKinetic};
+use liestep::mechanics::{Regular, WithKinetic};
 use liestep::numbers::Entries;
 use liestep_late::{Late, Slots};
 
@@ -55,6 +55,6 @@ where
     E::Advected: Advected<E::Group> + Slots,
     CayleyRetraction: Retraction<E::Group>,
 {
-    let late = Late::<E::Group, E::Advected, WithEitherKinetic>::like(compiled).expect("a declaration");
+    let late = Late::<E::Group, E::Advected, WithKinetic>::like(compiled).expect("a declaration");
     assert_same(compiled, &late, seed);
 }
