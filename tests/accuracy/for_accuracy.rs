@@ -333,7 +333,9 @@ fn a_scene_that_cannot_be_split_has_its_own_steps() {
     let accuracy = Accuracy { tolerance: 1e-5, horizon: 1.0 };
     let spun = motion.top.clone() + Rotor { spin: Vector3::x() };
     let stepper = Stepper::for_accuracy(spun, accuracy, motion.attitude, motion.velocity).unwrap();
-    assert!(stepper.choice().offers().iter().all(|offer| matches!(offer.scheme, Scheme::Step | Scheme::Composition(_))));
+    assert!(
+        stepper.choice().offers().iter().all(|offer| matches!(offer.scheme, Scheme::Step | Scheme::Composition(_)))
+    );
     let stepper = ask_coupled(&motion, accuracy).unwrap();
     assert!(stepper.choice().error <= 1e-5);
 }

@@ -16,7 +16,7 @@ use declarations::{
     Gyrostat, LogTop, Magnet, OrbitingBody, RodElement, Satellite, SixthOrderTop, SuspendedLoad, TetheredPlate,
     TopOnCart, TwoBodies, UnderwaterBody,
 };
-use liestep::mechanics::{Effect, Inertia, KineticPart, Regular, WithExpensiveKinetic, WithKinetic};
+use liestep::mechanics::{Effect, Inertia, Regular, WithKinetic};
 use liestep::motion::{Batch, Batchable, Integrator};
 use liestep::{SO3, StateOf, Stepper};
 use liestep_late::{Backend, Declaration, Interpreter, Late, LateError, Program};
@@ -31,7 +31,7 @@ const ROUNDS: usize = 200;
 const STEP: f64 = 0.01;
 const LANES: u32 = 8;
 
-type LateTop<K, B> = Late<SO3, Vector3<f64>, K, B>;
+type LateTop<B> = Late<SO3, Vector3<f64>, WithKinetic, B>;
 
 fn main() -> Result<(), Uncounted> {
     // Cargo adds `--bench`.
@@ -41,8 +41,8 @@ fn main() -> Result<(), Uncounted> {
     let fourth = FourthOrderTop { J: inertia, weight: 1.5 * 9.81, rho, up };
     let full = FullTop { J_d: inertia.to_nonstandard(), m: 1.5, g: 9.81, rho, up };
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["count", "fourth", kind, steps] => return count::<_, WithExpensiveKinetic>(fourth, kind, steps.parse()?),
-        ["count", _, kind, steps] => return count::<_, WithKinetic>(full, kind, steps.parse()?),
+        ["count", "fourth", kind, steps] => return count(fourth, kind, steps.parse()?),
+        ["count", _, kind, steps] => return count(full, kind, steps.parse()?),
         ["instructions"] => {
             for (scene, name) in [("full", "(3.13), any inertia"), ("fourth", "of the fourth order")] {
                 for kind in KINDS {
@@ -54,8 +54,8 @@ fn main() -> Result<(), Uncounted> {
         }
         _ => first_steps(),
     }
-    compare::<_, WithKinetic>("(3.13), any inertia", full);
-    compare::<_, WithExpensiveKinetic>("of the fourth order", fourth);
+    compare("(3.13), any inertia", full);
+    compare("of the fourth order", fourth);
     texts();
     Ok(())
 }
@@ -64,17 +64,12 @@ const KINDS: [&str; 6] =
     ["compiled", "machine code", "specialised", "interpreted", "in lanes of eight", "machine code in lanes"];
 
 /// Runs steps of one kind.
-fn count<S, K>(scene: S, kind: &str, steps: u32) -> Result<(), Uncounted>
+fn count<S>(scene: S, kind: &str, steps: u32) -> Result<(), Uncounted>
 where
     S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-    K: KineticPart,
-    LateTop<K, Machine>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-    LateTop<K, Interpreter>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-    Stepper<LateTop<K, Interpreter>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Interpreter>>>,
-    Stepper<LateTop<K, Machine>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Machine>>>,
 {
-    let machine: LateTop<K, Machine> = Late::like(&scene)?;
-    let interpreted: LateTop<K, Interpreter> = Late::like(&scene)?;
+    let machine: LateTop<Machine> = Late::like(&scene)?;
+    let interpreted: LateTop<Interpreter> = Late::like(&scene)?;
     let mut run = match kind {
         "compiled" => alone(scene),
         "machine code" => alone(machine),
@@ -134,17 +129,12 @@ where
     })
 }
 
-fn compare<S, K>(name: &str, scene: S)
+fn compare<S>(name: &str, scene: S)
 where
     S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-    K: KineticPart,
-    LateTop<K, Machine>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-    LateTop<K, Interpreter>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-    Stepper<LateTop<K, Interpreter>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Interpreter>>>,
-    Stepper<LateTop<K, Machine>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Machine>>>,
 {
-    let machine: LateTop<K, Machine> = Late::like(&scene).expect("a declaration");
-    let interpreted: LateTop<K, Interpreter> = Late::like(&scene).expect("a declaration");
+    let machine: LateTop<Machine> = Late::like(&scene).expect("a declaration");
+    let interpreted: LateTop<Interpreter> = Late::like(&scene).expect("a declaration");
     let lanes = [in_lanes(&interpreted), in_lanes(&machine)];
     let specialised = machine.clone().specialised();
     let mut kinds: Vec<_> = [alone(scene), alone(machine), alone(specialised), alone(interpreted)].into();
@@ -165,7 +155,7 @@ fn first_steps() {
     let times = (0..20).map(|number| {
         let text = FullTop::DECLARATION.replace("FullTop", &format!("Top{number}"));
         let clock = Instant::now();
-        let late: LateTop<WithKinetic, Machine> = Late::parse(&text).expect("a declaration");
+        let late: LateTop<Machine> = Late::parse(&text).expect("a declaration");
         let inertia = [2.0, 0.0, 0.0, 0.0, 2.5, 0.0, 0.0, 0.0, 3.0];
         let numbers: [(&str, &[f64]); 5] =
             [("J_d", &inertia), ("m", &[1.5]), ("g", &[9.81]), ("rho", &[0.1, 0.0, 0.4]), ("up", &[0.0, 0.0, 1.0])];

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use liestep::gradients::Input;
 use liestep::groups::LieGroup as _;
-use liestep::mechanics::WithEitherKinetic;
+use liestep::mechanics::WithKinetic;
 use liestep::motion::OwnStep;
 use liestep::recording::{Column, Sink as _};
 use liestep::{SO3, Stepper};
@@ -22,7 +22,7 @@ use crate::start::Start;
 use crate::table::Columns;
 
 /// One type for all scenes on SO(3).
-type Scene = Late<SO3, Four, WithEitherKinetic>;
+type Scene = Late<SO3, Four, WithKinetic>;
 
 /// From where to where, by what, within what.
 #[derive(FromPyObject)]

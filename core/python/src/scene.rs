@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use liestep::accuracy::{Accuracy, Candidate, Choice, choose, displacement, of_any_group};
 use liestep::groups::{Advected, CayleyRetraction, Given, LieGroup, Retraction};
-use liestep::mechanics::{Scene as Stepped, WithEitherKinetic};
+use liestep::mechanics::{Scene as Stepped, WithKinetic};
 use liestep::motion::AnyStepper;
 use liestep::numbers::Entries as _;
 use liestep::with::{Method, Steppable};
@@ -29,7 +29,7 @@ type Backend = liestep_machine::Machine;
 type Backend = liestep_late::Interpreter;
 
 pub(crate) type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
-type Sum<G, W> = Late<G, W, WithEitherKinetic>;
+type Sum<G, W> = Late<G, W, WithKinetic>;
 
 /// A declaration whose group and advected parameters are types below, and numbers above.
 pub(crate) trait Steps: Send + Sync {

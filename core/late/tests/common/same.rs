@@ -3,7 +3,7 @@
 use liestep::Stepper;
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Regular, WithEitherKinetic};
+use liestep::mechanics::{Regular, WithKinetic};
 use liestep::motion::Propagator as _;
 use liestep::numbers::Entries;
 use liestep_derivation::ParameterKind;
@@ -57,7 +57,7 @@ where
     E::Advected: Advected<E::Group> + Slots,
     CayleyRetraction: Retraction<E::Group>,
 {
-    let late = Late::<E::Group, E::Advected, WithEitherKinetic>::like(compiled).expect("a declaration");
+    let late = Late::<E::Group, E::Advected, WithKinetic>::like(compiled).expect("a declaration");
     assert_same(compiled, &late, seed);
     assert_whole(compiled, seed);
 }
@@ -76,7 +76,7 @@ where
         return;
     }
     let family = WholeFamily::<Interpreter>::of(declaration).expect("a step");
-    let is_exact = !declaration.is_expensive && family.layout().factors.iter().all(|factor| factor.kind.rows() < 5);
+    let is_exact = family.layout().factors.iter().all(|factor| factor.kind.rows() < 5);
     let described = numbers(compiled);
     let (mut rest, mut own) = (&described[..], Vec::new());
     for parameter in &declaration.parameters {

@@ -5,9 +5,7 @@ use std::rc::Rc;
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
-use liestep::mechanics::{
-    Effect, Inertia, KineticPart, OnlyKicks, Regular, Term as _, WithEitherKinetic, WithKinetic, WithoutKinetic,
-};
+use liestep::mechanics::{Effect, Inertia, KineticPart, OnlyKicks, Term as _, WithKinetic, WithoutKinetic};
 use liestep::methods::SplittingScheme;
 use liestep::motion::AnyStepper;
 use liestep::with::{Method, Scheme, densities};
@@ -30,13 +28,13 @@ type Program<K, W = Seen> = Late<SO3, W, K, Backend>;
 /// The program of a file's effects and its force.
 type Rest<W = Seen> = Program<WithoutKinetic, W>;
 /// The program of all terms of a scene.
-pub type Whole<K = WithEitherKinetic, W = Seen> = Program<K, W>;
+pub type Whole<W = Seen> = Program<WithKinetic, W>;
 
-/// A [`Whole`] with at most one advected vector and a cheap Jacobian. Its states are shorter, so its steps are faster.
-pub type LeastWhole = Whole<WithKinetic, V>;
+/// A [`Whole`] with at most one advected vector. Its states are shorter, so its steps are faster.
+pub type LeastWhole = Whole<V>;
 
 /// The stepper of a member in lanes, and its initial state.
-pub type MemberInLanes<K, W> = (Stepper<Whole<K, W>>, StateOf<Whole<K, W>>);
+pub type MemberInLanes<W> = (Stepper<Whole<W>>, StateOf<Whole<W>>);
 
 /// The kinetic term: a Lagrangian of the file's own, or a library body by its text; with its parameters.
 #[derive(Clone)]
@@ -86,20 +84,15 @@ fn program<K: KineticPart, W: Advected<SO3> + Slots>(
 }
 
 /// The program of a scene for members of an ensemble in lanes. `None` for another method, for varying steps, for
-/// effects along orbits, and for terms that need another `K` or `W`.
-pub(crate) fn whole<K: KineticPart, W: Advected<SO3> + Slots>(file: &SceneFile) -> Option<Whole<K, W>> {
+/// effects along orbits, and for terms that need another `W`.
+pub(crate) fn whole<W: Advected<SO3> + Slots>(file: &SceneFile) -> Option<Whole<W>> {
     let is_of_one_kind = matches!(file.run.method, Scheme::Step) && !file.has_steps_of_its_own();
     let J = inertia(file).ok().filter(|_| is_of_one_kind && file.turning().next().is_none())?;
     program(file, &J, Moving::of(file, J).ok().as_ref()).ok()?
 }
 
 /// The stepper of the program with this file's numbers, and the initial state.
-pub(crate) fn member<K, W>(file: &SceneFile, whole: &Whole<K, W>) -> Result<MemberInLanes<K, W>, Stop>
-where
-    W: Advected<SO3> + Slots,
-    K: KineticPart,
-    Whole<K, W>: Regular<Scalar = f64, Group = SO3>,
-{
+pub(crate) fn member<W: Advected<SO3> + Slots>(file: &SceneFile, whole: &Whole<W>) -> Result<MemberInLanes<W>, Stop> {
     let Pace::Step { step, .. } = file.run.pace else { return Err(nothing()) };
     file.check_kicks()?;
     let J = inertia(file)?;

@@ -3,7 +3,6 @@
 use std::error::Error;
 
 use liestep::groups::Advected;
-use liestep::mechanics::{KineticPart, Regular};
 use liestep::motion::Moment;
 use liestep::recording::{self, Csv, Sink};
 use liestep::with::Scheme;
@@ -93,10 +92,10 @@ impl SceneFile {
     }
 
     /// The scene as one program, for members of its ensemble in lanes. `None` for another method, for varying steps,
-    /// for effects along orbits, and for terms that need another `K` or `W`: try [`LeastWhole`](crate::LeastWhole)
+    /// for effects along orbits, and for terms that need another `W`: try [`LeastWhole`](crate::LeastWhole)
     /// first.
     #[must_use]
-    pub fn whole<K: KineticPart, W: Advected<SO3> + Slots>(&self) -> Option<Whole<K, W>> {
+    pub fn whole<W: Advected<SO3> + Slots>(&self) -> Option<Whole<W>> {
         choose::whole(self)
     }
 
@@ -106,13 +105,7 @@ impl SceneFile {
     /// # Errors
     ///
     /// The errors of [`stepper`](Self::stepper).
-    pub fn in_lanes<K: KineticPart, W: Advected<SO3> + Slots>(
-        &self,
-        whole: &Whole<K, W>,
-    ) -> Result<MemberInLanes<K, W>, Mistake>
-    where
-        Whole<K, W>: Regular<Scalar = f64, Group = SO3>,
-    {
+    pub fn in_lanes<W: Advected<SO3> + Slots>(&self, whole: &Whole<W>) -> Result<MemberInLanes<W>, Mistake> {
         choose::member(self, whole).map_err(|stop| self.mistake(stop))
     }
 

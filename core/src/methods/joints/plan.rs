@@ -88,7 +88,7 @@ where
 
     /// One simplified iteration, with the last Jacobian.
     fn simplified(&mut self) -> Update {
-        let residuals = S::newton_residual(&self.plan.constants, &self.terms, &self.half).momentum_defect;
+        let residuals = S::newton_residual(&self.plan.constants, &self.terms, &self.half);
         let next = self.next();
         self.update(&residuals, &next, f64::INFINITY)
     }
@@ -248,7 +248,7 @@ where
     }
 
     fn keep(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Self::Kept {
-        WarmStart::of(half_coordinates(scene, motion, self.h), false)
+        WarmStart::of(half_coordinates(scene, motion, self.h))
     }
 
     fn admits(&self, scene: &S, motion: &Motion<[Body; N], S::Advected>) -> Result<(), SetupError> {

@@ -245,7 +245,7 @@ pub struct Stages<P> {
     /// The residual, then the Jacobian. Values of `a` and `w` are computed again in each iteration, which takes no
     /// longer than passing them on.
     pub newton_system: P,
-    /// The residual; then the moving kick, if a solve is faster without the Jacobian.
+    /// The residual.
     pub newton_residual: P,
     /// `Ad*_F` of the diamond with `F`.
     pub kick_after: P,
@@ -312,8 +312,6 @@ pub struct StagedDeclaration {
     pub derivation: String,
     /// Whether there is a kinetic part.
     pub has_kinetic: bool,
-    /// Whether a solve is faster without the Jacobian.
-    pub is_expensive: bool,
     /// Whether the unknown part, the kick before the solve and the kick after it are nonzero.
     pub parts: [bool; 3],
     /// The power of `1 + |y|²` that the Newton system is multiplied by.

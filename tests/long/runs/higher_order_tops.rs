@@ -1,7 +1,5 @@
-//! Invariants of many steps without the Jacobian: energy without drift, Casimirs and momenta, and reversibility, no
-//! worse than with Newton's iteration.
+//! Invariants of many steps of tops of higher order: energy without drift, Casimirs and momenta.
 
-use checks::solvers::WithJacobian;
 use declarations::{self, FourthOrderTop, SixthOrderTop};
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::prelude::*;
@@ -57,20 +55,19 @@ fn kept<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>
     }
 }
 
-fn assert_no_worse(without: &Kept, with: &Kept) {
-    println!("{without:?} without, {with:?} with");
-    assert!(without.energy < 2.0 * with.energy + 1e-11);
-    assert!(without.casimirs < 1e-12 && without.spin < 1e-12);
+fn assert_kept(found: &Kept) {
+    println!("{found:?}");
+    assert!(found.energy < 1e-5 && found.casimirs < 1e-12 && found.spin < 1e-12);
 }
 
 #[test]
-fn the_fourth_order_top_keeps_what_it_kept() {
-    assert_no_worse(&kept(fourth(), 0.01), &kept(WithJacobian(fourth()), 0.01));
-    assert_no_worse(&kept(fourth(), 0.05), &kept(WithJacobian(fourth()), 0.05));
+fn the_fourth_order_top_keeps_its_invariants() {
+    assert_kept(&kept(fourth(), 0.01));
+    assert_kept(&kept(fourth(), 0.05));
 }
 
 #[test]
-fn the_sixth_order_top_keeps_what_it_kept() {
-    assert_no_worse(&kept(sixth(), 0.01), &kept(WithJacobian(sixth()), 0.01));
-    assert_no_worse(&kept(sixth(), 0.05), &kept(WithJacobian(sixth()), 0.05));
+fn the_sixth_order_top_keeps_its_invariants() {
+    assert_kept(&kept(sixth(), 0.01));
+    assert_kept(&kept(sixth(), 0.05));
 }
