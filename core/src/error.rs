@@ -67,6 +67,13 @@ pub enum SetupError {
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
+    /// A term of a system is at no body.
+    #[error("{cause}")]
+    Place {
+        /// The fault, as a sentence.
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        cause: Text,
+    },
     /// A joint doesn't fit the bodies that it joins.
     #[error("the joint {joint} (from zero) {cause}; check the bodies that it joins")]
     Joint {

@@ -19,6 +19,7 @@ mod chain;
 mod composition;
 mod gauss;
 mod joints;
+mod multibody;
 mod splitting;
 #[cfg(test)]
 mod tests;
@@ -29,6 +30,7 @@ pub use composition::{Composition, CompositionScheme};
 pub use gauss::{CollocationMemory, CotangentCarry};
 pub use gauss::{CotangentGauss, Gauss};
 pub use joints::{BallJoint, Constraint, Joint, JointedBodies, Joints, PinJoint, Place, PlacedJoint, Slope};
+pub use multibody::{Multibody, MultibodyStepper};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{
     DifferentiableFlow, ExactBody, Flow, Inside, KineticFlow, ProcessedScheme, ProcessedSplitting, Splitting,
