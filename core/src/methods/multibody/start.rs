@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use nalgebra::Vector6;
 
 use super::equations::{Equations, Widest, gap};
-use super::stepper::MultibodyStepper;
+use super::stepper::{MultibodyStepper, check_length};
 use super::{Body, parts, place};
 use crate::error::SetupError;
 use crate::groups::{CayleyRetraction, LieGroup as _, Retraction};
@@ -32,7 +32,8 @@ impl MultibodyStepper {
     /// [`SetupError::OffConstraint`] for a joint that is open, [`SetupError::OffVelocity`] for velocities that would
     /// open it, and [`SetupError::RedundantJoint`] for a joint that is redundant beside the others, even if only in this
     /// configuration; [`start_nearest`](Self::start_nearest) closes joints. [`SetupError::NotInGroup`] for an attitude
-    /// that is no rotation, and [`SetupError::NonFinite`] for numbers that aren't finite or aren't those of all bodies.
+    /// that is no rotation, [`SetupError::Length`] unless there is one of each body, and [`SetupError::NonFinite`] for
+    /// numbers that aren't finite.
     pub fn start(&self, attitudes: &[Body], velocities: &[Vector6<f64>]) -> Result<Box<[f64]>, SetupError> {
         check_velocities(velocities, self.bodies())?;
         self.check_attitudes(attitudes)?;
@@ -47,7 +48,8 @@ impl MultibodyStepper {
     /// The errors of [`start`](Self::start).
     pub fn start_with_momentum(&self, attitudes: &[Body], momenta: &[Vector6<f64>]) -> Result<Box<[f64]>, SetupError> {
         self.check_attitudes(attitudes)?;
-        if momenta.len() != self.bodies() || !is_finite(momenta) {
+        check_length("momentum", 6 * momenta.len(), 6 * self.bodies())?;
+        if !is_finite(momenta) {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
         self.check_inertias(|body| attitudes[body])?;
@@ -99,9 +101,8 @@ impl MultibodyStepper {
     }
 
     fn check_attitudes(&self, attitudes: &[Body]) -> Result<(), SetupError> {
-        if attitudes.len() != self.bodies() {
-            return Err(SetupError::NonFinite { what: "attitude of each body" });
-        }
+        let all = self.offsets.attitudes();
+        check_length("attitude", all / self.bodies() * attitudes.len(), all)?;
         let defect: f64 = attitudes.iter().map(|body| body.defect()).sum();
         // A NaN fails this test.
         if defect <= OFF_GROUP { Ok(()) } else { Err(SetupError::NotInGroup { defect }) }
@@ -188,9 +189,6 @@ fn is_finite(vectors: &[Vector6<f64>]) -> bool {
 
 /// Checks that these are finite velocities of all bodies.
 fn check_velocities(velocities: &[Vector6<f64>], bodies: usize) -> Result<(), SetupError> {
-    if velocities.len() == bodies && is_finite(velocities) {
-        Ok(())
-    } else {
-        Err(SetupError::NonFinite { what: "velocity" })
-    }
+    check_length("velocity", 6 * velocities.len(), 6 * bodies)?;
+    if is_finite(velocities) { Ok(()) } else { Err(SetupError::NonFinite { what: "velocity" }) }
 }

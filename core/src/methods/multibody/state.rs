@@ -1,6 +1,5 @@
 //! The numbers of a state: attitudes, momenta, the memory for the next guess, and the number of steps.
 
-use alloc::format;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -21,19 +20,12 @@ const DIFFERENCES: usize = 7;
 
 /// The layout of the states of a number of bodies.
 pub(super) fn layout(bodies: usize) -> Layout {
-    let names = |place: usize, units: [&'static str; 2]| {
-        ["x", "y", "z"].iter().map(|name| (format!("{name}_{place}"), units)).collect()
-    };
     let of_body = |body: usize| {
-        let turning = names(2 * body + 1, ["rad/s", "kg m²/s"]);
-        let moving = names(2 * body + 2, ["m/s", "kg m/s"]);
-        [
-            Factor { kind: FactorKind::Rotation, components: turning },
-            Factor { kind: FactorKind::Translation(4), components: moving },
-        ]
+        let kinds = [FactorKind::Rotation, FactorKind::Translation(4)];
+        (1..).zip(kinds).map(move |(place, kind)| Factor::of(kind, 3).at(2 * body + place))
     };
-    let factors = (0..bodies).flat_map(of_body).collect();
-    Layout { factors, advected: Vec::new(), memory: 6 * bodies * (2 + DIFFERENCES) + 1 }
+    let memory = 6 * bodies * (2 + DIFFERENCES) + 1;
+    Layout { factors: (0..bodies).flat_map(of_body).collect(), advected: Vec::new(), memory }
 }
 
 /// The places of a state's numbers.

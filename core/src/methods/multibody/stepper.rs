@@ -42,6 +42,7 @@ use crate::numbers::{BlockDiagonal, Coordinates as _, Pattern};
 ///
 /// The step (2.7) of \[RDAE\] with the multipliers of constrained variational integrators, \[MW01\], section 3: SHAKE in
 /// positions, RATTLE in momenta.
+#[derive(Clone)]
 pub struct MultibodyStepper {
     pub(super) h: f64,
     /// With its terms in the order of their bodies.
@@ -436,20 +437,6 @@ impl MultibodyStepper {
         with_workspace(|work| self.step_in(state, work, None))
     }
 
-    /// A state at the attitude and momentum of another one, whose time and memory begin here; NaN if that is too short.
-    #[must_use]
-    pub fn adopt(&self, state: &[f64]) -> Box<[f64]> {
-        let known = self.offsets.attitudes() + 6 * self.bodies();
-        let mut adopted = self.offsets.zeros();
-        if state.len() < known {
-            adopted.fill(f64::NAN);
-            return adopted.into();
-        }
-        adopted[..known].copy_from_slice(&state[..known]);
-        self.begin(&mut adopted);
-        adopted.into()
-    }
-
     /// Sets the memory of a state to that of a new start.
     pub(super) fn begin(&self, state: &mut [f64]) {
         let bodies = self.attitudes(state);
@@ -458,6 +445,11 @@ impl MultibodyStepper {
         self.estimate(&bodies, &momenta, &mut halves);
         self.offsets.begin(state, &halves);
     }
+}
+
+/// Checks the length of a list of numbers.
+pub(super) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), SetupError> {
+    if found == expected { Ok(()) } else { Err(SetupError::Length { what, found, expected }) }
 }
 
 /// The radius of gyration of a body with this inertia, m.
@@ -472,9 +464,8 @@ impl Propagator for MultibodyStepper {
     }
 
     fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
-        if attitude.len() != self.layout.entries() || velocity.len() != self.layout.components() {
-            return Err(SetupError::NonFinite { what: "attitude or velocity of this layout" });
-        }
+        check_length("attitude", attitude.len(), self.layout.entries())?;
+        check_length("velocity", velocity.len(), self.layout.components())?;
         let bodies: Vec<_> = attitude.chunks(self.offsets.attitudes() / self.bodies()).map(body_of).collect();
         let velocities: Vec<_> = velocity.chunks(6).map(Vector6::from_column_slice).collect();
         Self::start(self, &bodies, &velocities)
@@ -501,6 +492,18 @@ impl Propagator for MultibodyStepper {
         }
         self.begin(&mut next);
         Ok(next.into())
+    }
+
+    fn adopt(&self, state: &[f64]) -> Box<[f64]> {
+        let known = self.offsets.attitudes() + 6 * self.bodies();
+        let mut adopted = self.offsets.zeros();
+        if state.len() < known {
+            adopted.fill(f64::NAN);
+            return adopted.into();
+        }
+        adopted[..known].copy_from_slice(&state[..known]);
+        self.begin(&mut adopted);
+        adopted.into()
     }
 
     fn step_size(&self) -> f64 {

@@ -1,6 +1,5 @@
 //! The description of a system: its bodies, terms and joints.
 
-use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
@@ -86,13 +85,13 @@ use crate::mechanics::Effect;
 /// assert!((stepper.energy(&state) - energy).abs() < 1e-2 * energy.abs());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Multibody {
     pub(super) bodies: usize,
     /// Each with its body.
-    pub(super) terms: Vec<(usize, Box<dyn BodyTerm>)>,
+    pub(super) terms: Vec<(usize, Arc<dyn BodyTerm>)>,
     /// Each with its bodies; `None` is space.
-    pub(super) pairs: Vec<([Option<usize>; 2], Box<dyn PairTerm>)>,
+    pub(super) pairs: Vec<([Option<usize>; 2], Arc<dyn PairTerm>)>,
     pub(super) joints: Vec<Joined>,
 }
 

@@ -1,6 +1,5 @@
 //! Terms on one body and between two, as values of any type.
 
-use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::sync::Arc;
 
@@ -19,7 +18,7 @@ pub(super) trait BodyTerm: Send + Sync {
     fn validate(&self) -> Result<(), SetupError>;
 
     /// The term with its constants folded for another step.
-    fn refolded(&self, h: f64) -> Box<dyn BodyTerm>;
+    fn refolded(&self, h: f64) -> Arc<dyn BodyTerm>;
 
     /// Whether the constants of this step are finite.
     fn is_finite(&self) -> bool;
@@ -53,7 +52,7 @@ pub(super) trait BodyTerm: Send + Sync {
 pub(super) trait PairTerm: Send + Sync {
     fn validate(&self) -> Result<(), SetupError>;
 
-    fn refolded(&self, h: f64) -> Box<dyn PairTerm>;
+    fn refolded(&self, h: f64) -> Arc<dyn PairTerm>;
 
     fn is_finite(&self) -> bool;
 
@@ -82,7 +81,7 @@ impl<E: Effect<Scalar = f64>> Folded<E> {
 }
 
 /// The term on a body, with constants for a step of 1 s.
-pub(super) fn of_body<E>(term: E) -> Box<dyn BodyTerm>
+pub(super) fn of_body<E>(term: E) -> Arc<dyn BodyTerm>
 where
     E: Effect<Scalar = f64, Group = Body, Retraction = CayleyRetraction> + Send + Sync + 'static,
     E::Constants: Send + Sync,
@@ -92,11 +91,11 @@ where
         assert!(E::DENOMINATORS == 0, "a term with cleared denominators has another residual than joints are added to");
         assert!(E::IS_QUADRATIC, "joints hold bodies whose continuous limit is quadratic in the velocity");
     }
-    Box::new(Folded::of(Arc::new(term), 1.0))
+    Arc::new(Folded::of(Arc::new(term), 1.0))
 }
 
 /// The term between two bodies, with constants for a step of 1 s.
-pub(super) fn of_pair<E>(term: E) -> Box<dyn PairTerm>
+pub(super) fn of_pair<E>(term: E) -> Arc<dyn PairTerm>
 where
     E: Effect<Scalar = f64, Group = TwoBodies, Retraction = CayleyRetraction> + Send + Sync + 'static,
     E::Constants: Send + Sync,
@@ -108,7 +107,7 @@ where
             "between bodies only potentials of the ends of a step are possible: this term couples their equations"
         );
     }
-    Box::new(Folded::of(Arc::new(term), 1.0))
+    Arc::new(Folded::of(Arc::new(term), 1.0))
 }
 
 impl<E> BodyTerm for Folded<E>
@@ -121,8 +120,8 @@ where
         self.term.validate()
     }
 
-    fn refolded(&self, h: f64) -> Box<dyn BodyTerm> {
-        Box::new(Self::of(Arc::clone(&self.term), h))
+    fn refolded(&self, h: f64) -> Arc<dyn BodyTerm> {
+        Arc::new(Self::of(Arc::clone(&self.term), h))
     }
 
     fn is_finite(&self) -> bool {
@@ -181,8 +180,8 @@ where
         self.term.validate()
     }
 
-    fn refolded(&self, h: f64) -> Box<dyn PairTerm> {
-        Box::new(Self::of(Arc::clone(&self.term), h))
+    fn refolded(&self, h: f64) -> Arc<dyn PairTerm> {
+        Arc::new(Self::of(Arc::clone(&self.term), h))
     }
 
     fn is_finite(&self) -> bool {

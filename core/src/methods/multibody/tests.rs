@@ -182,7 +182,7 @@ fn a_system_is_a_propagator() {
     assert!(matches!(propagator.step(short), Err(StepError::NonFinite { .. })));
     assert!(matches!(propagator.part(short, 0.5), Err(StepError::NonFinite { .. })));
     assert!(propagator.energy(short).is_nan() && propagator.defect(short).is_nan());
-    assert!(stepper.adopt(&short[..10]).iter().all(|number| number.is_nan()));
+    assert!(propagator.adopt(&short[..10]).iter().all(|number| number.is_nan()));
     assert!(propagator.start(&attitude[1..], &[0.0; 12]).is_err());
 }
 
