@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Matrix6, Vector2, Vector6};
 
 roots!();
 
-use super::super::joints::Place;
+use super::constraint::Place;
 use super::elimination::{Closing, Ends, Node, Unknowns, factorise, solve};
 use super::graph::{Joined, Member, Tree};
 use super::{parts, place_of};

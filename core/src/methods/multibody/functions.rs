@@ -2,11 +2,8 @@
 
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
-use super::super::joints::{Constraint, Place};
+use super::constraint::{Constraint, Place};
 use crate::error::SetupError;
-
-/// The most functions of a joint: two bodies move against each other in six ways.
-pub(super) const MOST_FUNCTIONS: usize = 6;
 
 /// The functions of a joint. Vectors have zeros after them, and matrices unused columns.
 pub(super) trait Functions: Send + Sync {
@@ -29,7 +26,7 @@ pub(super) trait Functions: Send + Sync {
 /// A constraint of `K` functions.
 pub(super) struct Erased<C, const K: usize>(pub(super) C);
 
-impl<C: Constraint<K> + Send + Sync, const K: usize> Functions for Erased<C, K> {
+impl<C: Constraint<K>, const K: usize> Functions for Erased<C, K> {
     fn validate(&self) -> Result<(), SetupError> {
         self.0.validate()
     }
@@ -39,7 +36,7 @@ impl<C: Constraint<K> + Send + Sync, const K: usize> Functions for Erased<C, K> 
     }
 
     fn rows(&self) -> usize {
-        self.0.rows()
+        K
     }
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64> {
@@ -53,7 +50,7 @@ impl<C: Constraint<K> + Send + Sync, const K: usize> Functions for Erased<C, K> 
         for ((slope, turn), columns) in slopes.iter().zip(turns).zip(columns) {
             let Some(turn) = turn else { continue };
             let turned = slope.turn * turn;
-            for row in 0..self.0.rows() {
+            for row in 0..K {
                 let mut column = columns.column_mut(row);
                 for k in 0..3 {
                     column[k] = turned[(row, k)];

@@ -4,7 +4,7 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::functions::{Functions, MOST_FUNCTIONS};
+use super::functions::Functions;
 use crate::error::SetupError;
 
 /// A joint between two bodies, or between space and a body.
@@ -47,9 +47,6 @@ impl Tree {
             }
             if joined.above == Some(joined.below) {
                 return refused("joins a body to itself");
-            }
-            if !(1..=MOST_FUNCTIONS).contains(&joined.functions.rows()) {
-                return refused("has no function, or more than six");
             }
             if let Err(error) = joined.functions.validate() {
                 return match error {

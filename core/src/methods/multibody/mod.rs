@@ -17,6 +17,7 @@
 //! The unknowns of Newton's iteration are half the coordinates `y` of `F` and the multipliers. The residual is affine
 //! in the multipliers, so they need no initial guess from the last step.
 
+mod constraint;
 mod elimination;
 mod equations;
 mod functions;
@@ -32,12 +33,12 @@ mod terms;
 mod tests;
 mod workspace;
 
+pub use constraint::{BallJoint, Constraint, PinJoint, Place, Slope};
 pub use stepper::MultibodyStepper;
 pub use system::Multibody;
 
 use nalgebra::{Vector3, Vector6};
 
-use super::joints::Place;
 use crate::groups::{LieGroup, R3, SO3};
 
 /// The group of a body: a rotation, and a translation in the axes of space.

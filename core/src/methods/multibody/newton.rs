@@ -6,13 +6,13 @@ use nalgebra::{Vector2, Vector6};
 
 roots!();
 
+use super::constraint::Place;
 use super::equations::gap;
 use super::parts;
 use super::stepper::MultibodyStepper;
 use super::workspace::Workspace;
 use crate::error::StepError;
 use crate::groups::{CayleyRetraction, LieGroup as _, Retraction, SO3};
-use crate::methods::Place;
 use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, has_sufficed, may_suffice};
 
 /// The relative rounding error of an update, by places and by opposed forces.

@@ -5,12 +5,13 @@ use alloc::vec::Vec;
 
 use nalgebra::Vector6;
 
+use super::constraint::Place;
 use super::equations::{Equations, Widest, gap};
 use super::stepper::{MultibodyStepper, check_length};
 use super::{Body, parts, place};
 use crate::error::SetupError;
 use crate::groups::{CayleyRetraction, LieGroup as _, Retraction};
-use crate::methods::Place;
+use crate::motion::check_attitude;
 use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS};
 
 /// The tolerance for gaps at the start, relative to the terms of the functions, and for velocities that open a joint,
@@ -20,9 +21,6 @@ const PRINTED: f64 = f64::EPSILON * 1e5;
 const CLOSED: f64 = 2.0 * f64::EPSILON;
 /// The longest turn in one update of the search for a start, rad; half coordinates have half of it.
 const LONGEST: f64 = 2.0 * LONGEST_DAMPED;
-/// The tolerance for the distance of attitudes from the rotations: a matrix with twelve printed digits passes.
-const OFF_GROUP: f64 = f64::EPSILON * 1e4;
-
 impl MultibodyStepper {
     /// A state from the configurations of all bodies and their velocities, rad/s in the axes of the body and m/s in
     /// those of space.
@@ -103,9 +101,7 @@ impl MultibodyStepper {
     fn check_attitudes(&self, attitudes: &[Body]) -> Result<(), SetupError> {
         let all = self.offsets.attitudes();
         check_length("attitude", all / self.bodies() * attitudes.len(), all)?;
-        let defect: f64 = attitudes.iter().map(|body| body.defect()).sum();
-        // A NaN fails this test.
-        if defect <= OFF_GROUP { Ok(()) } else { Err(SetupError::NotInGroup { defect }) }
+        attitudes.iter().try_for_each(check_attitude)
     }
 
     /// Equations whose slopes and matrices aren't set yet.

@@ -59,10 +59,6 @@ impl Offsets {
         vec![0.0; self.length()]
     }
 
-    pub(super) fn body(self, state: &[f64], body: usize) -> Body {
-        body_of(&state[ATTITUDE * body..])
-    }
-
     pub(super) fn momentum(self, state: &[f64], body: usize) -> Vector6<f64> {
         Vector6::from_column_slice(&state[self.attitudes() + 6 * body..][..6])
     }
@@ -126,6 +122,11 @@ impl Offsets {
     pub(super) fn set_steps(self, state: &mut [f64], steps: f64) {
         state[self.length() - 1] = steps;
     }
+}
+
+/// The configuration of a body of a state.
+pub(super) fn body_at(state: &[f64], body: usize) -> Body {
+    body_of(&state[ATTITUDE * body..])
 }
 
 /// A body by the entries of its matrices, row by row.

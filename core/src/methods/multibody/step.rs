@@ -2,15 +2,16 @@
 
 use nalgebra::Vector6;
 
+use super::constraint::Place;
 use super::equations::Equations;
 use super::newton::Problem;
+use super::state::body_at;
 use super::stepper::MultibodyStepper;
 use super::terms::space;
 use super::workspace::{Workspace, with_workspace};
 use super::{Body, place};
 use crate::error::StepError;
 use crate::groups::{CayleyRetraction, LieGroup as _, Retraction};
-use crate::methods::Place;
 use crate::motion::StepReport;
 
 /// The number of steps between two projections of attitudes onto the rotations. Internal forces cancel only as far as
@@ -65,7 +66,7 @@ impl MultibodyStepper {
     fn load(&self, state: &[f64], work: &mut Workspace, steps: f64) -> Result<(), StepError> {
         let is_due = steps % STEPS_BETWEEN_CHECKS == 0.0;
         for body in 0..self.bodies() {
-            let now = self.offsets.body(state, body);
+            let now = body_at(state, body);
             let restored = if is_due { now.restored(0.0) } else { None };
             work.now[body] = restored.map_or(now, |(restored, _)| restored);
             work.places[body] = place(&work.now[body]);
@@ -198,7 +199,7 @@ impl MultibodyStepper {
         work.fit(self.bodies());
         work.equations.fit(self.joints(), &self.tree);
         for (body, force) in force.iter().enumerate() {
-            work.next[body] = self.offsets.body(state, body);
+            work.next[body] = body_at(state, body);
             work.momenta[body] = self.offsets.momentum(state, body);
             work.a[body] = force * (self.h * 0.5);
         }

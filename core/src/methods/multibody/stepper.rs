@@ -9,9 +9,10 @@ use nalgebra::{Matrix6, Vector6};
 
 roots!();
 
+use super::constraint::Place;
 use super::equations::gap;
 use super::graph::{Joined, Tree};
-use super::state::{Offsets, body_of, layout};
+use super::state::{Offsets, body_at, body_of, layout};
 use super::system::{Multibody, ends};
 use super::terms::{BodyTerm, space};
 use super::workspace::with_workspace;
@@ -19,7 +20,6 @@ use super::{Body, place};
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup as _;
 use crate::mechanics::{SceneVisitor, check_inertia};
-use crate::methods::Place;
 use crate::motion::{Layout, Propagator, StepReport};
 use crate::numbers::{BlockDiagonal, Coordinates as _, Pattern};
 
@@ -59,11 +59,8 @@ pub struct MultibodyStepper {
 impl core::fmt::Debug for MultibodyStepper {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let (bodies, joints) = (self.bodies(), self.joints().len());
-        f.debug_struct("MultibodyStepper")
-            .field("h", &self.h)
-            .field("bodies", &bodies)
-            .field("joints", &joints)
-            .finish()
+        let mut debug = f.debug_struct("MultibodyStepper");
+        debug.field("h", &self.h).field("bodies", &bodies).field("joints", &joints).finish_non_exhaustive()
     }
 }
 
@@ -148,7 +145,9 @@ impl MultibodyStepper {
         }
         for (bodies, term) in &self.system.pairs {
             visitor.term("between two bodies");
-            bodies.iter().for_each(|&body| visitor.parameter("body", number(body)));
+            for &body in bodies {
+                visitor.parameter("body", number(body));
+            }
             term.describe(visitor);
         }
         for joined in self.joints() {
@@ -224,7 +223,7 @@ impl MultibodyStepper {
 
     /// The configurations of a state.
     pub(super) fn attitudes(&self, state: &[f64]) -> Vec<Body> {
-        (0..self.bodies()).map(|body| self.offsets.body(state, body)).collect()
+        (0..self.bodies()).map(|body| body_at(state, body)).collect()
     }
 
     /// The configuration of a body, as attitude and position.
@@ -234,7 +233,7 @@ impl MultibodyStepper {
     /// If there is no such body, or if the slice is no state of this [`layout`](Propagator::layout).
     #[must_use]
     pub fn attitude(&self, state: &[f64], body: usize) -> Body {
-        self.offsets.body(state, body)
+        body_at(state, body)
     }
 
     /// The momentum of a body in its own axes, its linear momentum in those of space.

@@ -4,9 +4,9 @@ use alloc::string::String;
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use super::super::joints::Constraint;
 use super::Body;
-use super::functions::{Erased, MOST_FUNCTIONS};
+use super::constraint::Constraint;
+use super::functions::Erased;
 use super::graph::Joined;
 use super::stepper::MultibodyStepper;
 use super::terms::{BodyTerm, PairTerm, of_body, of_pair};
@@ -90,10 +90,12 @@ pub struct Multibody {
     pub(super) bodies: usize,
     /// Each with its body.
     pub(super) terms: Vec<(usize, Arc<dyn BodyTerm>)>,
-    /// Each with its bodies; `None` is space.
-    pub(super) pairs: Vec<([Option<usize>; 2], Arc<dyn PairTerm>)>,
+    pub(super) pairs: Vec<PlacedPair>,
     pub(super) joints: Vec<Joined>,
 }
+
+/// A term between two bodies; `None` is space.
+type PlacedPair = ([Option<usize>; 2], Arc<dyn PairTerm>);
 
 impl Multibody {
     /// A system without bodies.
@@ -136,13 +138,8 @@ impl Multibody {
     }
 
     /// Adds a joint between a body above, or space, `None`, and a body below. Errors count joints from zero.
-    pub fn join<C: Constraint<K> + Send + Sync + 'static, const K: usize>(
-        &mut self,
-        joint: C,
-        above: Option<usize>,
-        below: usize,
-    ) {
-        const { assert!(K <= MOST_FUNCTIONS, "a joint between two bodies has six functions at most") }
+    pub fn join<C: Constraint<K>, const K: usize>(&mut self, joint: C, above: Option<usize>, below: usize) {
+        const { assert!(0 < K && K < 7, "a joint between two bodies has one function at least and six at most") }
         self.joints.push(Joined { functions: Arc::new(Erased(joint)), above, below });
     }
 
@@ -181,12 +178,10 @@ impl Multibody {
         let is_there = |body: usize| body < self.bodies;
         let on_bodies = self.terms.iter().all(|(body, _)| is_there(*body));
         if !on_bodies || !self.pairs.iter().flat_map(|(bodies, _)| bodies).flatten().all(|&body| is_there(body)) {
-            return Err(SetupError::Place {
-                cause: "a term is at a body that there isn't; they are counted from zero",
-            });
+            return Err(SetupError::Place { cause: "a term is at a body that there isn't" });
         }
         if self.pairs.iter().any(|(bodies, _)| bodies[0] == bodies[1]) {
-            return Err(SetupError::Place { cause: "a term is between a body and itself; give it two bodies" });
+            return Err(SetupError::Place { cause: "a term is between a body and itself" });
         }
         Ok(())
     }

@@ -1,19 +1,16 @@
-//! Systems as values have the bits of systems as types.
+//! Systems as propagators, their places, and threads that share a stepper.
 
 use alloc::vec::Vec;
-use core::array::from_fn;
 
 use liestep::lagrangian;
 use nalgebra::{Vector3, Vector6};
 
-use super::{Body, Multibody, MultibodyStepper};
+use super::{Body, Multibody};
 use crate::error::{SetupError, StepError};
 use crate::groups::{R3, SO3};
-use crate::laws::samples::Random;
-use crate::mechanics::{Between, Each, NonstandardInertia};
-use crate::methods::{BallJoint, Joints, PinJoint, PlacedJoint};
-use crate::motion::{Propagator, Stepper};
-use crate::numbers::Bodies;
+use crate::mechanics::NonstandardInertia;
+use crate::methods::BallJoint;
+use crate::motion::Propagator;
 
 /// A body with its weight.
 #[lagrangian(
@@ -68,77 +65,6 @@ fn row<const N: usize>(tilts: [f64; N]) -> ([Body; N], Vector3<f64>) {
         (attitude, R3::from(corner - along * 0.5))
     });
     (places, corner)
-}
-
-/// Checks that attitudes, momenta and energies are those of the typed stepper after every step.
-macro_rules! assert_bits {
-    ($typed:expr, $stepper:expr, $places:expr, $moving:expr) => {{
-        let (typed, stepper): (_, MultibodyStepper) = ($typed, $stepper);
-        let mut expected = typed.start_nearest($places, Bodies($moving)).unwrap();
-        let mut state = stepper.start_nearest(&$places, &$moving).unwrap();
-        for step in 0..300 {
-            for (body, (place, momentum)) in expected.attitude().iter().zip(expected.momentum().0).enumerate() {
-                assert_eq!(stepper.attitude(&state, body), *place, "{step}");
-                assert_eq!(stepper.momentum(&state, body), momentum, "{step}");
-            }
-            assert_eq!(stepper.energy(&state), typed.energy(&expected));
-            assert_eq!(stepper.widest_gap(&state), typed.widest_gap(&expected));
-            let reports = (stepper.step(&mut state).unwrap(), typed.step(&mut expected).unwrap());
-            assert_eq!(reports.0.iterations, reports.1.iterations, "{step}");
-        }
-    }};
-}
-
-#[test]
-fn a_garland_has_the_bits_of_types() {
-    const N: usize = 3;
-    let (places, corner) = row([0.9, 0.1, -0.8]);
-    let bodies = [rod(1.0, 0.0), rod(0.7, 0.0), rod(1.3, 0.0)];
-    let tree: [_; N] = from_fn(|k| match k {
-        0 => PlacedJoint::to_space(ball(Vector3::zeros(), LEFT), 0),
-        _ => PlacedJoint::between(ball(RIGHT, LEFT), k - 1, k),
-    });
-    let last = PlacedJoint::to_space(ball(corner, RIGHT), 2);
-    let typed = Stepper::jointed(Each::<N>::of(bodies), Joints::tree(tree).closed_by([last]), 0.005).unwrap();
-    let mut system = Multibody::new();
-    bodies.into_iter().for_each(|body| _ = system.body(body));
-    tree.iter().chain([&last]).for_each(|joined| system.join(joined.joint, joined.above, joined.below));
-    let mut random = Random::new(3);
-    let moving: [Vector6<f64>; N] = from_fn(|_| random.sample());
-    assert_bits!(typed, system.stepper(0.005).unwrap(), places, moving);
-}
-
-#[test]
-fn a_tree_with_springs_and_pins_has_the_bits_of_types() {
-    let (places, _) = row([0.9, 0.1, -0.8, 0.3]);
-    let bodies = [rod(1.0, 0.0), rod(0.7, 0.0), rod(1.3, 0.0), rod(0.9, 0.0)];
-    let cord = Cord { k: 20.0, at_1: LEFT * 0.3, at_2: RIGHT * 0.4 };
-    let pin = |above, below| PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::y() };
-    let tree = [
-        PlacedJoint::between(pin(RIGHT, LEFT), 2, 3),
-        PlacedJoint::between(pin(RIGHT, LEFT), 1, 2),
-        PlacedJoint::to_space(pin(Vector3::zeros(), LEFT), 0),
-        PlacedJoint::between(pin(RIGHT, LEFT), 0, 1),
-    ];
-    let scene = Each::<4>::of(bodies) + Between::<0, 3, 4>::of([cord]);
-    let typed = Stepper::jointed(scene, Joints::tree(tree), 0.005).unwrap();
-    let mut system = Multibody::new();
-    bodies.into_iter().for_each(|body| _ = system.body(body));
-    system.between([Some(0), Some(3)], cord);
-    tree.iter().for_each(|joined| system.join(joined.joint, joined.above, joined.below));
-    let moving = from_fn::<Vector6<f64>, 4, _>(|k| Vector6::y() * [1.0, -2.0, 0.5, 0.0][k]);
-    let stepper = system.stepper(0.005).unwrap();
-    let (mut expected, mut state) =
-        (typed.start_nearest(places, Bodies(moving)).unwrap(), stepper.start_nearest(&places, &moving).unwrap());
-    // What is advected differs by rounding: it is seen anew from each attitude.
-    for _ in 0..300 {
-        typed.step(&mut expected).unwrap();
-        stepper.step(&mut state).unwrap();
-    }
-    for (body, place) in expected.attitude().iter().enumerate() {
-        let off = (stepper.attitude(&state, body).0.as_matrix() - place.0.as_matrix()).norm();
-        assert!(off < 1e-11, "{off:e}");
-    }
 }
 
 /// A system as a propagator: reading and continuing a state, a part of a step, and slices of a wrong length.

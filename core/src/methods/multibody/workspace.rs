@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
-use super::super::joints::Place;
+use super::constraint::Place;
 use super::equations::Equations;
 use super::{Body, Increment};
 
