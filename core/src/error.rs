@@ -69,10 +69,17 @@ pub enum SetupError {
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
+    /// A term of a system is at no body.
+    #[error("{cause}; add bodies first, and put terms at their numbers, from zero")]
+    Place {
+        /// The fault, as a sentence.
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        cause: Text,
+    },
     /// A joint doesn't fit the bodies that it joins.
     #[error("the joint {joint} (from zero) {cause}; check the bodies that it joins")]
     Joint {
-        /// The joint, from zero: those of trees first, then those that close loops.
+        /// The joint, from zero.
         joint: usize,
         /// The fault, as a predicate.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
@@ -356,7 +363,7 @@ pub enum StepError {
         "the joint {joint} (from zero) comes to a singular position (pivot {pivot:e}), where its force isn't determined; take a joint with fewer functions, smaller steps, or another way"
     )]
     SingularJoint {
-        /// The joint, from zero: those of trees first, then those that close loops.
+        /// The joint, from zero.
         joint: usize,
         /// Pivot of the joint, relative to its value between free bodies.
         pivot: f64,

@@ -158,7 +158,7 @@ impl<E: Effect + ?Sized> Limit<E> {
     label = "not an effect",
     note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums",
     note = "a continuous Lagrangian `l = …` is one with `discretise = …`, which makes its steps",
-    note = "joints hold the bodies of a scene together: `Stepper::jointed(scene, Joints::tree([…]), h)`"
+    note = "joints are added to a system of bodies: `liestep::methods::Multibody`"
 )]
 #[hot]
 pub trait Effect: Term {

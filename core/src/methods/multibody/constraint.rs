@@ -41,12 +41,11 @@ pub struct Slope<const K: usize> {
 
 /// A holonomic constraint on two bodies, or on a body and space: `K` functions of their places, which vanish.
 ///
-/// [`BallJoint`], [`PinJoint`] and [`Joint`] are constraints. [`constraint`](macro@crate::constraint) declares another
+/// [`BallJoint`] and [`PinJoint`] are constraints. [`constraint`](macro@crate::constraint) declares another
 /// by its functions, and derives its [`slope`](Self::slope). In an implementation by hand, as in
 /// `examples/declarations/strut.rs`, nothing checks that the slope is the derivative of the [`gap`](Self::gap).
 ///
-/// A stepper takes one type of joint. For several kinds implement this trait for an enum, as [`Joint`] does, with the
-/// largest `K`, and with each kind's number of functions in [`rows`](Self::rows). An `Option` may hold no joint.
+/// A [`Multibody`](super::Multibody) system takes joints of any types, with up to six functions each.
 ///
 /// # Examples
 ///
@@ -54,10 +53,8 @@ pub struct Slope<const K: usize> {
 ///
 /// ```
 /// use liestep::groups::R3;
-/// use liestep::mechanics::Each;
-/// use liestep::methods::{PlacedJoint, Joints};
-/// use liestep::numbers::Bodies;
-/// use liestep::{NonstandardInertia, SO3, Stepper, constraint, lagrangian};
+/// use liestep::methods::Multibody;
+/// use liestep::{NonstandardInertia, SO3, constraint, lagrangian};
 /// use nalgebra::{Vector3, Vector6};
 ///
 /// #[constraint(
@@ -91,11 +88,13 @@ pub struct Slope<const K: usize> {
 ///
 /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09))?;
 /// let strut = Strut { above: Vector3::zeros(), below: Vector3::x() * 0.2, length: 1.0 };
-/// let joints = Joints::tree([PlacedJoint::to_space(strut, 0)]);
 /// let start = [(SO3::identity(), R3::from(Vector3::new(-0.2, 0.0, -1.0)))];
 /// let off = |h: f64, steps: u32| -> Result<f64, Box<dyn std::error::Error>> {
-///     let stepper = Stepper::jointed(Each::<1>::of([Heavy { J_d, m: 1.0, g: 9.81 }]), joints, h)?;
-///     let mut state = stepper.start(start, Bodies([Vector6::new(0.0, 0.0, 0.0, 0.0, 2.0, 0.0)]))?;
+///     let mut system = Multibody::new();
+///     let body = system.body(Heavy { J_d, m: 1.0, g: 9.81 });
+///     system.join(strut, None, body);
+///     let stepper = system.stepper(h)?;
+///     let mut state = stepper.start(&start, &[Vector6::new(0.0, 0.0, 0.0, 0.0, 2.0, 0.0)])?;
 ///     let (energy, mut off) = (stepper.energy(&state), 0.0_f64);
 ///     for _ in 0..steps {
 ///         stepper.step(&mut state)?;
@@ -112,9 +111,9 @@ pub struct Slope<const K: usize> {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no constraint on two bodies",
     label = "not a joint",
-    note = "joints are `BallJoint`, `PinJoint`, `Joint`, which is either, and what `#[constraint(…)]` declares"
+    note = "joints are `BallJoint`, `PinJoint`, and what `#[constraint(…)]` declares"
 )]
-pub trait Constraint<const K: usize>: Copy + Debug + PartialEq {
+pub trait Constraint<const K: usize>: Debug + Send + Sync + 'static {
     /// Checks the parameters.
     ///
     /// # Errors
@@ -122,13 +121,7 @@ pub trait Constraint<const K: usize>: Copy + Debug + PartialEq {
     /// [`SetupError::Parameter`] names the first field with an invalid value.
     fn validate(&self) -> Result<(), SetupError>;
 
-    /// The number of functions; the rows after it are zero everywhere.
-    #[must_use]
-    fn rows(&self) -> usize {
-        K
-    }
-
-    /// The name, by which checkpoints distinguish two kinds with the same parameters.
+    /// The name, by which descriptions distinguish two kinds with the same parameters.
     fn name(&self) -> &'static str;
 
     /// The functions, each in a unit of its own: m for lengths, 1 for cosines.
@@ -175,15 +168,6 @@ pub struct PinJoint {
     pub axis_above: Vector3<f64>,
     /// The axis `n_b`, in the axes of the body below, of any length.
     pub axis_below: Vector3<f64>,
-}
-
-/// A joint of either kind, for systems with both.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Joint {
-    /// A ball joint: three functions.
-    Ball(BallJoint),
-    /// A pin joint: five functions.
-    Pin(PinJoint),
 }
 
 /// Checks that these vectors are finite.
@@ -293,82 +277,4 @@ fn lengthened(slope: &Slope<3>) -> Slope<5> {
     all.turn.fixed_rows_mut::<3>(0).copy_from(&slope.turn);
     all.shift.fixed_rows_mut::<3>(0).copy_from(&slope.shift);
     all
-}
-
-impl Constraint<5> for Joint {
-    fn name(&self) -> &'static str {
-        match self {
-            Self::Ball(joint) => joint.name(),
-            Self::Pin(joint) => joint.name(),
-        }
-    }
-
-    fn validate(&self) -> Result<(), SetupError> {
-        match self {
-            Self::Ball(joint) => joint.validate(),
-            Self::Pin(joint) => joint.validate(),
-        }
-    }
-
-    fn rows(&self) -> usize {
-        match self {
-            Self::Ball(joint) => joint.rows(),
-            Self::Pin(joint) => joint.rows(),
-        }
-    }
-
-    fn gap(&self, above: &Place, below: &Place) -> SVector<f64, 5> {
-        match self {
-            Self::Ball(joint) => {
-                let gap = joint.gap(above, below);
-                SVector::from([gap.x, gap.y, gap.z, 0.0, 0.0])
-            }
-            Self::Pin(joint) => joint.gap(above, below),
-        }
-    }
-
-    fn slope(&self, above: &Place, below: &Place) -> [Slope<5>; 2] {
-        match self {
-            Self::Ball(joint) => joint.slope(above, below).map(|slope| lengthened(&slope)),
-            Self::Pin(joint) => joint.slope(above, below),
-        }
-    }
-
-    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
-        match self {
-            Self::Ball(joint) => joint.describe(visit),
-            Self::Pin(joint) => joint.describe(visit),
-        }
-    }
-}
-
-/// An optional joint: `None` constrains nothing, so that [`JointedBodies`](crate::methods::JointedBodies) has a joint
-/// less than its type says.
-impl<C: Constraint<K>, const K: usize> Constraint<K> for Option<C> {
-    fn name(&self) -> &'static str {
-        self.as_ref().map_or("nothing", C::name)
-    }
-
-    fn validate(&self) -> Result<(), SetupError> {
-        self.as_ref().map_or(Ok(()), C::validate)
-    }
-
-    fn rows(&self) -> usize {
-        self.as_ref().map_or(0, C::rows)
-    }
-
-    fn gap(&self, above: &Place, below: &Place) -> SVector<f64, K> {
-        self.as_ref().map_or_else(SVector::zeros, |joint| joint.gap(above, below))
-    }
-
-    fn slope(&self, above: &Place, below: &Place) -> [Slope<K>; 2] {
-        let nothing = Slope { turn: SMatrix::zeros(), shift: SMatrix::zeros() };
-        self.as_ref().map_or([nothing; 2], |joint| joint.slope(above, below))
-    }
-
-    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
-        if let Some(joint) = self {
-            joint.describe(visit);
-        }
-    }
 }
