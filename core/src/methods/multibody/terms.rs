@@ -149,7 +149,7 @@ where
 
     fn newton_residual(&self, now: &Body, a: &Vector6<f64>, half: &Vector6<f64>) -> Vector6<f64> {
         let terms = E::step_terms(&self.constants, a, &self.spatial.seen_from(now));
-        E::newton_residual(&self.constants, &terms, half).momentum_defect
+        E::newton_residual(&self.constants, &terms, half)
     }
 
     fn remainder(&self, a: &Vector6<f64>) -> Vector6<f64> {
