@@ -6,7 +6,8 @@
 //! `{latex, written} → declaration`: a [`Declaration`] is the derivation of a text, with its stages as straight-line
 //! programs, or the `sum` of several; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as
 //! any other. A [`Backend`] runs the programs: [`Interpreter`] here, machine code in `liestep-machine`. `carried`
-//! compares advected parameters with their type.
+//! compares advected parameters with their type. `whole → declaration` makes the steps of any declaration on any group, with
+//! slices of numbers for states.
 #![forbid(unsafe_code)]
 
 mod carried;
@@ -21,6 +22,7 @@ mod latex;
 mod specialised;
 mod sum;
 mod term;
+mod whole;
 mod written;
 
 pub use carried::Slots;
@@ -33,4 +35,5 @@ pub use latex::latex;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use specialised::specialised;
 pub use term::{Late, numbers};
+pub use whole::{Whole, WholeError};
 pub use written::{c, rust};

@@ -17,9 +17,10 @@ mod solvability;
 
 pub(crate) use branch::trusted_radius;
 pub use guess::{Guess, WarmStart};
-pub(crate) use iteration::{Kick, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SETTLED};
-pub(crate) use largest_step::{largest_fraction, six_digits};
+pub(crate) use iteration::{Kick, Root};
+pub use iteration::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, SETTLED};
+pub use largest_step::{largest_fraction, six_digits};
 pub(crate) use problem::{Problem, newton_system, step_terms};
-pub(crate) use reused_jacobian::{Curvature, has_sufficed, may_suffice, safe};
-pub use solvability::Solvability;
-pub(crate) use solvability::{TurningLimits, turning_limits};
+pub(crate) use reused_jacobian::Curvature;
+pub use reused_jacobian::{has_sufficed, may_suffice, safe};
+pub use solvability::{Solvability, TurningLimits, turning_limits};

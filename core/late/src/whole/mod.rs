@@ -1,0 +1,33 @@
+//! Steps of any declaration on any group, whose states are slices of numbers.
+//!
+//! [`Whole`] is one stepper for all declarations that are texts. The derivation writes a step as straight-line programs,
+//! from the generators of the group alone; this room runs them, compares numbers and decides: how often to iterate, whether
+//! a Jacobian serves twice, whether a solution continues the identity, when rounding errors are taken back. It knows no
+//! group.
+//!
+//! # Invariants
+//!
+//! - The decisions are those of the compiled step, in the same order, so that both make the same steps to the bit: on SO(3),
+//!   products, SE(2) and SE(3), solves with care included. From five rows on they differ by rounding, as pivots of an
+//!   inverse are taken on the diagonal.
+//! - Code and texts are shared. What depends on numbers and on `h` are the constants alone, so that a sweep derives once.
+//! - An error leaves a state as it was, and slices of wrong lengths are errors.
+//!
+//! Deliberately not here: splittings, collocation, joints and systems, densities, compensated sums. They are typed, and
+//! behind the same [`Propagator`](liestep::motion::Propagator).
+//!
+//! The files depend on each other in one direction: `stepper → composed → step → diagnosis → {care → iteration, constants} →
+//! limit → {codes, linear}`.
+
+mod care;
+mod codes;
+mod composed;
+mod constants;
+mod diagnosis;
+mod iteration;
+mod limit;
+mod linear;
+mod step;
+mod stepper;
+
+pub use stepper::{Whole, WholeError};
