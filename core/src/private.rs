@@ -19,7 +19,11 @@ pub use crate::mechanics::{
 pub use crate::methods::{Constraint, Place, Slope};
 pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Numbers, Real, real};
 
-pub use crate::solving::{largest_fraction, six_digits};
+// Decisions of a solve, for steps that are programs.
+pub use crate::solving::{
+    LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, SETTLED, Solvability, TurningLimits,
+    has_sufficed, largest_fraction, may_suffice, safe, six_digits, turning_limits,
+};
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 

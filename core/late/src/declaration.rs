@@ -5,9 +5,13 @@ use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
+use liestep::SetupError;
 use liestep::mechanics::Parts;
-use liestep::numbers::{Blocks, Real};
-use liestep_derivation::{Action, Array, Carried, MOST_WORK, Program, Refusal, StagedDeclaration, Stages, staged};
+use liestep::numbers::{Blocks, Coordinates as _, Real, real};
+use liestep_derivation::{
+    Action, Array, Carried, MOST_WORK, ParameterKind, Program, Refusal, StagedDeclaration, Stages, staged,
+};
+use nalgebra::Vector1;
 use proc_macro2::{LexError, TokenStream};
 
 use crate::code::Backend;
@@ -63,6 +67,11 @@ impl<C> Ready<C> {
     }
 }
 
+/// Finite in all lanes.
+pub(crate) fn is_finite<T: Real>(number: &T) -> bool {
+    Vector1::new(*number).is_finite()
+}
+
 /// All programs of a declaration, ready to run.
 pub(crate) type All<C> = Arc<Stages<Ready<C>>>;
 
@@ -80,7 +89,7 @@ pub(crate) fn ready<T: Real, B: Backend<T>>(programs: &Stages<Program>) -> Resul
     programs.try_map(|_| each.next().ok_or(LateError::TooLarge))
 }
 
-fn ready_each<T: Real, B: Backend<T>>(programs: &[&Program]) -> Result<Vec<Ready<B::Code>>, LateError> {
+pub(crate) fn ready_each<T: Real, B: Backend<T>>(programs: &[&Program]) -> Result<Vec<Ready<B::Code>>, LateError> {
     let arrays = |program: &Program| program.inputs.iter().fold(0, |arrays, source| arrays | 1 << source.array as u16);
     let codes = B::codes(programs)?.into_iter();
     let each = codes.zip(programs);
@@ -204,7 +213,10 @@ impl Declaration {
         self.once(|| ready_each::<T, B>(&programs.each_ref())?.try_into().map_err(|_| LateError::TooLarge))
     }
 
-    fn once<M: Any + Send + Sync>(&self, make: impl FnOnce() -> Result<M, LateError>) -> Result<Arc<M>, LateError> {
+    pub(crate) fn once<M: Any + Send + Sync>(
+        &self,
+        make: impl FnOnce() -> Result<M, LateError>,
+    ) -> Result<Arc<M>, LateError> {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(known) = made.iter().find_map(|one| Arc::clone(one).downcast::<M>().ok()) {
             return Ok(known);
@@ -231,6 +243,90 @@ impl Declaration {
     pub(crate) fn place(&self, index: usize) -> (usize, usize) {
         let lengths = || self.parameters.iter().map(|parameter| parameter.kind.len());
         (lengths().take(index).sum(), lengths().nth(index).unwrap_or(0))
+    }
+
+    /// Checks the numbers of all parameters.
+    pub(crate) fn check<T: Real>(&'static self, numbers: &[T]) -> Result<(), SetupError> {
+        for (index, parameter) in self.parameters.iter().enumerate() {
+            let (start, length) = self.place(index);
+            let (field, value) = (parameter.name.as_str(), &numbers[start..start + length]);
+            if !value.iter().all(is_finite) {
+                return Err(SetupError::Parameter { field, cause: "is not finite, or wasn't given" });
+            }
+            let is_inertia = parameter.kind == ParameterKind::Inertia;
+            if is_inertia && (0..9).any(|entry| value[entry] != value[entry % 3 * 3 + entry / 3]) {
+                return Err(SetupError::Parameter { field, cause: "is not symmetric" });
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets a parameter among the numbers of all: a matrix row by row, an inertia also by its three moments, and a diagonal
+    /// one also by its tensor.
+    ///
+    /// # Errors
+    ///
+    /// No parameter has this name, or it has another number of numbers.
+    pub fn set<T: Real>(&self, numbers: &mut [T], name: &str, value: &[T]) -> Result<(), LateError> {
+        let parameters = &self.parameters;
+        let Some(index) = parameters.iter().position(|known| known.name == name) else {
+            let known: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+            return Err(LateError::Unknown { name: name.to_owned(), known: known.join(", ") });
+        };
+        let (start, expected) = self.place(index);
+        let found = value.len();
+        let wrong = || LateError::Size { name: name.to_owned(), expected, found };
+        let place = numbers.get_mut(start..start + expected).ok_or_else(wrong)?;
+        let on_diagonal = |entry: usize| entry.is_multiple_of(4);
+        match (parameters[index].kind, found) {
+            (_, found) if found == expected => place.copy_from_slice(value),
+            (ParameterKind::Inertia, 3) => {
+                let entry = |at| if on_diagonal(at) { value[at / 4] } else { real::<T>(0.0) };
+                place.iter_mut().enumerate().for_each(|(at, number)| *number = entry(at));
+            }
+            (ParameterKind::DiagonalInertia, 9) if (0..9).all(|at| on_diagonal(at) || value[at] == real(0.0)) => {
+                place.iter_mut().zip(value.iter().step_by(4)).for_each(|(number, &value)| *number = value);
+            }
+            _ => return Err(wrong()),
+        }
+        Ok(())
+    }
+
+    /// The number of numbers of all parameters.
+    pub(crate) fn count(&self) -> usize {
+        self.parameters.iter().map(|parameter| parameter.kind.len()).sum()
+    }
+
+    /// The numbers of all parameters, by their names; those that aren't given are NaN, which no stepper accepts.
+    ///
+    /// # Errors
+    ///
+    /// No parameter has a name, or it has another number of numbers.
+    pub fn numbers(&self, values: &[(&str, &[f64])]) -> Result<Vec<f64>, LateError> {
+        let mut numbers = vec![f64::NAN; self.count()];
+        values.iter().try_for_each(|(name, value)| self.set(&mut numbers, name, value))?;
+        Ok(numbers)
+    }
+
+    /// The numbers of all parameters, from those that an effect [describes](crate::numbers): a diagonal inertia by its
+    /// tensor.
+    ///
+    /// # Errors
+    ///
+    /// The number of numbers is another.
+    pub fn described<T: Real>(&self, numbers: &[T]) -> Result<Vec<T>, LateError> {
+        // Every fourth entry of a tensor is on its diagonal.
+        let described = self.parameters.iter().map(|parameter| match parameter.kind {
+            ParameterKind::DiagonalInertia => (9, 4),
+            kind => (kind.len(), 1),
+        });
+        let (expected, found) = (described.clone().map(|(length, _)| length).sum(), numbers.len());
+        if expected != found {
+            return Err(LateError::Size { name: self.name.clone(), expected, found });
+        }
+        let (mut numbers, mut stored) = (numbers.iter().copied(), Vec::with_capacity(self.count()));
+        described.for_each(|(length, stride)| stored.extend(numbers.by_ref().take(length).step_by(stride)));
+        Ok(stored)
     }
 
     /// All advected parameters, each with its value in space.

@@ -9,8 +9,8 @@ use liestep_derivation::Array;
 
 use crate::carried::Slots;
 use crate::code::{Backend, Given, Interpreter};
-use crate::declaration::{All, Declaration, Ready, ready};
-use crate::term::{Late, entries, is_finite};
+use crate::declaration::{All, Declaration, Ready, is_finite, ready};
+use crate::term::{Late, entries};
 
 pub(crate) type Matrix<G> = <G as LieGroup>::Matrix;
 pub(crate) type Vector<G> = <G as LieGroup>::Vector;

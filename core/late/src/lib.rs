@@ -5,8 +5,9 @@
 //! `{lanes, gradients} → effect → term → declaration → sum → {frames, specialised → code} → error`, and
 //! `{latex, written} → declaration`: a [`Declaration`] is the derivation of a text, with its stages as straight-line
 //! programs, or the `sum` of several; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as
-//! any other; a [`Whole`] is one as a stepper on any group, by the whole step as data. A [`Backend`] runs the programs: [`Interpreter`] here, machine code in `liestep-machine`. `carried`
-//! compares advected parameters with their type.
+//! any other. A [`Backend`] runs the programs: [`Interpreter`] here, machine code in `liestep-machine`. `carried`
+//! compares advected parameters with their type. `whole → declaration` makes the steps of any declaration on any group, with
+//! slices of numbers for states.
 #![forbid(unsafe_code)]
 
 mod carried;
@@ -34,5 +35,5 @@ pub use latex::latex;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use specialised::specialised;
 pub use term::{Late, numbers};
-pub use whole::{Whole, WholeComposed, WholeFamily};
+pub use whole::{Whole, WholeError};
 pub use written::{c, rust};

@@ -9,8 +9,7 @@ use liestep::SetupError;
 use liestep::groups::{Advected, LieGroup};
 use liestep::mechanics::{Effect, KineticPart, SceneVisitor, SharedBy, Sum, Term, WithKinetic};
 use liestep::numbers::{Coordinates, Entries, Real, real};
-use liestep_derivation::{ParameterKind, Program, Stages};
-use nalgebra::Vector1;
+use liestep_derivation::{Program, Stages};
 
 use crate::carried::Slots;
 use crate::code::{Backend, Interpreter};
@@ -63,11 +62,6 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> PartialEq for Late<G, W, K, B> {
     }
 }
 
-/// Finite in all lanes.
-pub(crate) fn is_finite<T: Real>(number: &T) -> bool {
-    Coordinates::is_finite(&Vector1::new(*number))
-}
-
 impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>> Late<G, W, K, B> {
     /// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]`, and proves the derivation. Its parameters have no
     /// values yet.
@@ -97,8 +91,7 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
         if K::IS_THERE != declaration.has_kinetic || !(K::MAY_BE_UNKNOWN || only_kicks) {
             return Err(LateError::Kinetic { declared: declaration.kinetic() });
         }
-        let numbers = declaration.parameters.iter().map(|parameter| parameter.kind.len()).sum();
-        let numbers = vec![real(f64::NAN); numbers].into();
+        let numbers = vec![real(f64::NAN); declaration.count()].into();
         Ok(Self::made(declaration, &declaration.ready::<G::Scalar, B>()?, numbers, None))
     }
 
@@ -170,26 +163,8 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
     ///
     /// No parameter has this name, or it has another number of numbers.
     pub fn with(mut self, name: &str, value: &[G::Scalar]) -> Result<Self, LateError> {
-        let parameters = &self.declaration.parameters;
-        let Some(index) = parameters.iter().position(|known| known.name == name) else {
-            let known: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-            return Err(LateError::Unknown { name: name.to_owned(), known: known.join(", ") });
-        };
-        let (start, expected) = self.declaration.place(index);
         let mut numbers = self.numbers.to_vec();
-        let place = &mut numbers[start..start + expected];
-        let on_diagonal = |entry: usize| entry.is_multiple_of(4);
-        match (parameters[index].kind, value.len()) {
-            (_, found) if found == expected => place.copy_from_slice(value),
-            (ParameterKind::Inertia, 3) => {
-                let entry = |at| if on_diagonal(at) { value[at / 4] } else { real::<G::Scalar>(0.0) };
-                place.iter_mut().enumerate().for_each(|(at, number)| *number = entry(at));
-            }
-            (ParameterKind::DiagonalInertia, 9) if (0..9).all(|at| on_diagonal(at) || value[at] == real(0.0)) => {
-                place.iter_mut().zip(value.iter().step_by(4)).for_each(|(number, &value)| *number = value);
-            }
-            (_, found) => return Err(LateError::Size { name: name.to_owned(), expected, found }),
-        }
+        self.declaration.set(&mut numbers, name, value)?;
         self.numbers = numbers.into();
         Ok(self)
     }
@@ -200,18 +175,7 @@ impl<G: LieGroup, W, K, B: Backend<G::Scalar>> Late<G, W, K, B> {
     ///
     /// The number of numbers is another.
     pub fn with_all(mut self, numbers: &[G::Scalar]) -> Result<Self, LateError> {
-        // An effect describes a diagonal inertia by the nine entries of its tensor: every fourth is on the diagonal.
-        let described = self.declaration.parameters.iter().map(|parameter| match parameter.kind {
-            ParameterKind::DiagonalInertia => (9, 4),
-            kind => (kind.len(), 1),
-        });
-        let (expected, found) = (described.clone().map(|(length, _)| length).sum(), numbers.len());
-        if expected != found {
-            return Err(LateError::Size { name: self.declaration.name.clone(), expected, found });
-        }
-        let (mut numbers, mut kept) = (numbers.iter().copied(), Vec::with_capacity(self.numbers.len()));
-        described.for_each(|(length, stride)| kept.extend(numbers.by_ref().take(length).step_by(stride)));
-        self.numbers = kept.into();
+        self.numbers = self.declaration.described(numbers)?.into();
         Ok(self)
     }
 
@@ -265,17 +229,7 @@ where
     type Advected = W;
 
     fn validate(&self) -> Result<(), SetupError> {
-        for (index, parameter) in self.declaration.parameters.iter().enumerate() {
-            let (field, value) = (parameter.name.as_str(), self.of_parameter(index));
-            if !value.iter().all(is_finite) {
-                return Err(SetupError::Parameter { field, cause: "is not finite, or wasn't given" });
-            }
-            let is_inertia = parameter.kind == ParameterKind::Inertia;
-            if is_inertia && (0..9).any(|entry| value[entry] != value[entry % 3 * 3 + entry / 3]) {
-                return Err(SetupError::Parameter { field, cause: "is not symmetric" });
-            }
-        }
-        Ok(())
+        self.declaration.check(&self.numbers)
     }
 
     fn advected(&self) -> W {

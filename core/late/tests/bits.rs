@@ -28,7 +28,7 @@ use liestep_late::{Array, Backend, Declaration, Interpreter, Late, LateError, nu
 use nalgebra::{Matrix3, Matrix5, Point, SMatrix, SVector, Vector3, Vector5};
 use simba::simd::AutoF64x4;
 
-use same::{assert_as_compiled, assert_same};
+use same::{assert_as_compiled, assert_same, assert_whole};
 
 /// Random parameters for which a declaration is valid.
 trait Sample {
@@ -102,6 +102,8 @@ macro_rules! as_compiled_beside {
             let compiled = random!(seed, $name { $($field)* });
             let late: Late<_, _, WithoutKinetic> = Late::like(&compiled).expect("a declaration");
             assert_same(&(body() + compiled), &(body() + late), seed);
+            let both = Declaration::sum(&[declared(&body()), declared(&compiled)]).expect("a sum");
+            assert_whole(&(body() + compiled), both, seed);
             if let Ok(kicks) = Late::<_, _, OnlyKicks>::like(&compiled) {
                 assert_same(&(body() + compiled), &(body() + kicks), seed);
             }
@@ -258,6 +260,7 @@ macro_rules! as_summed {
             declared(&random!(0, $first { $($of_first)* })) $(, declared(&random!(0, $name { $($field)* })))+
         ];
         let declaration = Declaration::sum(&terms).expect("a sum");
+        assert_whole(&sum, declaration, $seed);
         let late = Late::<_, _, WithKinetic>::of(declaration).and_then(|late| late.with_all(&numbers(&sum)));
         let late = late.expect("numbers");
         println!("{}", declaration.name);

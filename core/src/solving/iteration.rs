@@ -6,18 +6,18 @@ use crate::numbers::{Coordinates as _, Mask, Pattern, Real, nowhere, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue as _};
 
 /// Limit of the iterations. Quadratic convergence needs at most nine up to 0.999 of the fold.
-pub(crate) const MAX_ITERATIONS: u32 = 20;
+pub const MAX_ITERATIONS: u32 = 20;
 /// Limit of the iterations with shortened updates, which converge more slowly.
-pub(crate) const MAX_DAMPED_ITERATIONS: u32 = 60;
+pub const MAX_DAMPED_ITERATIONS: u32 = 60;
 /// Length of the longest shortened update, in half the coordinates: half a radian.
-pub(crate) const LONGEST_DAMPED: f64 = 0.25;
+pub const LONGEST_DAMPED: f64 = 0.25;
 /// Limit of the halvings of an update that leaves the domain of the Lagrangian.
-pub(crate) const MOST_HALVINGS: u32 = 40;
+pub const MOST_HALVINGS: u32 = 40;
 /// Criterion of convergence: the square of the last update relative to the unknown's, in roundings.
 ///
 /// Convergence is quadratic: a relative update of `√ε/8` is followed by one of the order of `ε/64`. Stopping earlier
 /// would make the energy drift; the residual can't be used, as it stagnates at its rounding floor.
-pub(crate) const SETTLED: f64 = 1.0 / 64.0;
+pub const SETTLED: f64 = 1.0 / 64.0;
 
 /// The result of a Newton iteration: its update, and the factors of its Jacobian for another update.
 pub(super) type Iteration<G> = NewtonUpdate<<G as LieGroup>::Vector, SquareOf<G>, <G as LieGroup>::Scalar>;

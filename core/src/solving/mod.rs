@@ -14,9 +14,10 @@ mod reused_jacobian;
 mod solvability;
 
 pub use guess::{Guess, WarmStart};
-pub(crate) use iteration::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SETTLED};
+pub(crate) use iteration::Root;
+pub use iteration::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, SETTLED};
 pub use largest_step::{largest_fraction, six_digits};
 pub(crate) use problem::{Problem, newton_system, step_terms};
-pub(crate) use reused_jacobian::{Curvature, has_sufficed, may_suffice, safe};
-pub use solvability::Solvability;
-pub(crate) use solvability::{TurningLimits, turning_limits};
+pub(crate) use reused_jacobian::Curvature;
+pub use reused_jacobian::{has_sufficed, may_suffice, safe};
+pub use solvability::{Solvability, TurningLimits, turning_limits};

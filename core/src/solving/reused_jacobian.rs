@@ -36,7 +36,8 @@ const SAFE: f64 = 1.0 / 16.0;
 const TYPICAL_CURVATURE: f64 = 1.0 / 16.0;
 
 /// The determinant [`Problem::safe`](super::Problem::safe), from that of the Jacobian at rest.
-pub(crate) fn safe<T: Real>(at_rest: T) -> T {
+#[must_use]
+pub fn safe<T: Real>(at_rest: T) -> T {
     at_rest * real(SAFE)
 }
 
@@ -91,14 +92,16 @@ impl<G: LieGroup> Lanes<G> {
 /// Whether a second update will be the last, after a first with the square `first` that has led to `|y|² = size`:
 /// `2C|u₁|³ ≤ REST ε|y|` bounds the error after `|u₂| = C|u₁|²` if `C` is one in other directions.
 #[hot]
-pub(crate) fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
+#[must_use]
+pub fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * REST / TYPICAL_CURVATURE);
     (first * first * first).simd_le(size * (tolerance * tolerance))
 }
 
 /// Whether it was the last: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ REST ε|y|`. Arguments are squares.
 #[hot]
-pub(crate) fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
+#[must_use]
+pub fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
     let tolerance = T::simd_default_epsilon() * real(0.5 * REST);
     (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))
 }

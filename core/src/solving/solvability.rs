@@ -33,7 +33,7 @@ pub enum Solvability {
 /// Bounds on the size of `h a` for the solvability of `U(F) = a`, on SO(3) in kg m². Between them it depends on the
 /// direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct TurningLimits {
+pub struct TurningLimits {
     /// Bound below which there is exactly one solution under 90°.
     pub(crate) certain: f64,
     /// Bound above which there is none.
@@ -43,7 +43,7 @@ pub(crate) struct TurningLimits {
 impl TurningLimits {
     /// The solvability at this `|h a|`.
     #[must_use]
-    pub(crate) fn decide(&self, size: f64) -> Solvability {
+    pub fn decide(&self, size: f64) -> Solvability {
         // The bounds' uncertainty by the roundings of `a` and of the moments.
         let margin = 1e-12;
         if size < self.certain * (1.0 - margin) {
@@ -64,7 +64,8 @@ const PROBES: [[f64; 4]; 4] =
 /// is physical.
 ///
 /// The momentum `U` is recognised by its values at some rotations, however it was declared or written.
-pub(crate) fn turning_limits<G: LieGroup>(
+#[must_use]
+pub fn turning_limits<G: LieGroup>(
     unknown: &dyn Fn(&G) -> Option<G::Vector>,
     inertia: &Square<G>,
 ) -> Option<TurningLimits> {

@@ -1,158 +1,143 @@
-//! Symmetric compositions of a step, on numbers.
-
-use std::sync::Arc;
+//! Stages of a step: one of its own length, or those of a symmetric composition.
 
 use liestep::methods::CompositionScheme;
-use liestep::motion::{Layout, Propagator, StepReport};
 use liestep::{SetupError, StepError};
 
-use super::family::WholeFamily;
-use super::stepper::{OF_THIS_LAYOUT, Whole};
+use super::codes::Codes;
+use super::constants::StepConstants;
+use super::step::{Increment, Numbered};
 use crate::code::Backend;
 
-/// A symmetric composition of a [`Whole`]: each stage has a memory of its own.
-#[derive(Clone, Debug)]
-pub struct WholeComposed<B: Backend<f64>> {
-    step: Whole<B>,
-    /// The steps of distinct coefficients, and the index of each stage's among them.
-    parts: Vec<Whole<B>>,
-    stages: Vec<usize>,
-    layout: Layout,
+/// A stage, and the linear extrapolation of its coordinates and of the previous stage's to the next stage's guess.
+#[derive(Clone, Copy, Debug)]
+struct Stage {
+    /// The place of its constants.
+    constants: usize,
+    /// The factor of this stage's coordinates in a guess without the previous stage.
+    scale: f64,
+    /// The factors of this stage's and of the previous one's in the extrapolation.
+    factors: [f64; 2],
 }
 
-impl<B: Backend<f64>> WholeComposed<B> {
-    /// The composition of steps of these numbers, whose stages make a step of `h`, s.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError::NotSelfAdjoint`] if a step of `−h` doesn't undo one of `h`, and the errors of [`Whole::new`].
-    pub fn new(
-        family: &Arc<WholeFamily<B>>,
+/// The constants of a step, and its stages: none for a single step.
+#[derive(Clone, Debug)]
+pub(super) struct Stages {
+    /// Distinct constants; those of the first stage come first.
+    constants: Vec<StepConstants>,
+    list: Vec<Stage>,
+}
+
+/// Larger extrapolation ratios would amplify the error of the guess.
+const FARTHEST_EXTRAPOLATION: f64 = 3.0;
+
+impl Stages {
+    /// The constants of a step `h`, by a composition if there is one.
+    pub(super) fn of<B: Backend<f64>>(
+        codes: &Codes<B>,
         numbers: &[f64],
         h: f64,
-        scheme: CompositionScheme,
+        scheme: Option<CompositionScheme>,
     ) -> Result<Self, SetupError> {
-        if !family.declaration.is_self_adjoint {
+        let Some(scheme) = scheme else {
+            return Ok(Self { constants: vec![StepConstants::of(codes, numbers, h)?], list: Vec::new() });
+        };
+        if !codes.declaration.is_self_adjoint {
             return Err(SetupError::NotSelfAdjoint);
         }
-        let step = Whole::new(family, numbers, h)?;
-        let (mut distinct, mut stages): (Vec<f64>, Vec<usize>) = (Vec::new(), Vec::new());
-        for gamma in scheme.stages() {
-            let known = distinct.iter().position(|other| other.to_bits() == gamma.to_bits());
-            stages.push(known.unwrap_or(distinct.len()));
-            if known.is_none() {
-                distinct.push(gamma);
+        let gammas: Vec<f64> = scheme.stages().collect();
+        let (mut distinct, mut places): (Vec<f64>, Vec<usize>) = (Vec::new(), Vec::new());
+        for gamma in &gammas {
+            let place = distinct.iter().position(|other| other.to_bits() == gamma.to_bits());
+            places.push(place.unwrap_or(distinct.len()));
+            if place.is_none() {
+                distinct.push(*gamma);
             }
         }
-        let parts = distinct.iter().map(|gamma| step.of_step(h * gamma)).collect::<Result<Vec<_>, _>>()?;
-        let layout = Layout { memory: 3 * family.sizes.n * stages.len(), ..family.layout.clone() };
-        Ok(Self { step, parts, stages, layout })
+        let constants = distinct.iter().map(|gamma| StepConstants::of(codes, numbers, h * gamma));
+        let around = |stage: usize| gammas[stage % gammas.len()];
+        let stage = |at: usize| Stage::between(places[at], around(at + gammas.len() - 1), around(at), around(at + 1));
+        Ok(Self { constants: constants.collect::<Result<_, _>>()?, list: (0..gammas.len()).map(stage).collect() })
     }
 
-    /// The number of a stage's memory.
-    fn memory(&self) -> usize {
-        3 * self.step.family.sizes.n
+    /// The constants of the first stage.
+    pub(super) fn first(&self) -> &StepConstants {
+        &self.constants[0]
     }
 
-    fn started(&self, own: &[f64]) -> Box<[f64]> {
-        let sizes = &self.step.family.sizes;
-        let (now, ratios) = (&own[..sizes.history()], self.stages.iter().map(|part| self.parts[*part].h / self.step.h));
-        let memory = &own[sizes.history()..own.len() - 1];
-        let mut state = now.to_vec();
-        // Increments are proportional to the step.
-        for ratio in ratios {
-            let ratio = if ratio.is_finite() { ratio } else { 0.0 };
-            state.extend(memory.iter().map(|number| number * ratio));
+    /// The number of stages.
+    pub(super) fn count(&self) -> usize {
+        self.list.len().max(1)
+    }
+
+    /// The number of numbers that a step needs besides its state.
+    pub(super) fn room<B: Backend<f64>>(&self, codes: &Codes<B>) -> usize {
+        let of_stages = if self.list.is_empty() { 0 } else { codes.sizes.state() + codes.sizes.n };
+        of_stages + super::step::room(codes)
+    }
+
+    /// One step; returns the sum of the iterations. After an error the state is as it was.
+    #[inline]
+    pub(super) fn step<B: Backend<f64>>(
+        &self,
+        numbered: Numbered<'_, B>,
+        state: &mut [f64],
+        room: &mut [f64],
+    ) -> Result<u32, StepError> {
+        if self.list.is_empty() {
+            numbered.step(self.first(), state, room)
+        } else {
+            self.compose(numbered, state, room)
         }
-        state.push(own[own.len() - 1]);
-        state.into()
     }
 
-    fn own(&self, state: &[f64]) -> Result<Vec<f64>, StepError> {
-        let sizes = &self.step.family.sizes;
-        if state.len() != self.layout.state() {
-            return Err(OF_THIS_LAYOUT);
+    fn compose<B: Backend<f64>>(
+        &self,
+        numbered: Numbered<'_, B>,
+        state: &mut [f64],
+        room: &mut [f64],
+    ) -> Result<u32, StepError> {
+        let sizes = &numbered.codes.sizes;
+        let (next, room) = room.split_at_mut(state.len());
+        let (earlier, room) = room.split_at_mut(sizes.n);
+        next.copy_from_slice(state);
+        let mut iterations = 0;
+        for stage in &self.list {
+            earlier.copy_from_slice(&next[sizes.history()..sizes.history() + sizes.n]);
+            let made = numbered.increment(&self.constants[stage.constants], next, room)?;
+            stage.guess(made, earlier, &mut next[sizes.history()..]);
+            iterations += made.iterations;
         }
-        Ok([&state[..sizes.history() + self.memory()], &state[state.len() - 1..]].concat())
+        let last = next.len() - 1;
+        next[last] += 1.0;
+        if numbered.is_due(next[last]) {
+            numbered.restore(next);
+        }
+        state.copy_from_slice(next);
+        Ok(iterations)
     }
 }
 
-impl<B: Backend<f64>> Propagator for WholeComposed<B> {
-    fn layout(&self) -> &Layout {
-        &self.layout
+impl Stage {
+    /// The stage with coefficient `γ = this` between stages with `before` and `next`.
+    ///
+    /// The coordinates of a stage over its `γ` are its mean velocity, which to second order is the velocity at the middle of
+    /// the stage. A straight line through two of these gives the next stage's. The next middle lies `(this + next)/2` ahead
+    /// of this stage's middle, the previous one `(before + this)/2` behind it.
+    fn between(constants: usize, before: f64, this: f64, next: f64) -> Self {
+        let ratio = (this + next) / (before + this);
+        let ratio = if ratio.abs() <= FARTHEST_EXTRAPOLATION { ratio } else { 0.0 };
+        let scale = next / this;
+        Self { constants, scale, factors: [scale * (1.0 + ratio), -ratio * next / before] }
     }
 
-    fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
-        self.step.start(attitude, velocity).map(|own| self.started(&own))
-    }
-
-    fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        let sizes = &self.step.family.sizes;
-        if state.len() != self.layout.state() {
-            return Err(OF_THIS_LAYOUT);
+    /// Writes the guess of the next stage behind the coordinates of this one in a memory. Near the fold coordinates change
+    /// too fast for the extrapolation.
+    fn guess(&self, made: Increment, earlier: &[f64], memory: &mut [f64]) {
+        let (n, [last, before]) = (earlier.len(), self.factors);
+        for (k, earlier) in earlier.iter().enumerate() {
+            let half = memory[k];
+            memory[2 * n + k] = if made.is_far { half * self.scale } else { half * last + earlier * before };
+            memory[n + k] = 0.0;
         }
-        let (here, memory, steps) = (sizes.history(), self.memory(), state[state.len() - 1]);
-        let (mut next, mut scratch, mut iterations) = (state.to_vec(), self.step.scratch(), 0);
-        let mut own = vec![0.0; sizes.state()];
-        own[..here].copy_from_slice(&state[..here]);
-        for (stage, part) in self.stages.iter().enumerate() {
-            let place = here + stage * memory;
-            own[here..here + memory].copy_from_slice(&next[place..place + memory]);
-            own[here + memory] = steps;
-            iterations += self.parts[*part].advance(&mut own, &mut scratch)?;
-            next[place..place + memory].copy_from_slice(&own[here..here + memory]);
-        }
-        next[..here].copy_from_slice(&own[..here]);
-        if let Some(last) = next.last_mut() {
-            *last = steps + 1.0;
-        }
-        state.copy_from_slice(&next);
-        Ok(StepReport::of(iterations))
-    }
-
-    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
-        let (mut next, mut iterations) = (state.to_vec(), 0);
-        for _ in 0..steps {
-            iterations += u64::from(self.step(&mut next)?.iterations);
-        }
-        state.copy_from_slice(&next);
-        Ok(iterations)
-    }
-
-    fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
-        let mut own = self.own(state)?;
-        let steps = own[own.len() - 1];
-        for part in &self.stages {
-            let share = self.parts[*part].h / self.step.h * fraction;
-            own = self.step.part(&own, if share.is_finite() { share } else { 0.0 })?.into();
-        }
-        if let Some(last) = own.last_mut() {
-            *last = steps;
-        }
-        Ok(self.started(&own))
-    }
-
-    fn adopt(&self, state: &[f64]) -> Box<[f64]> {
-        self.started(&self.step.adopt(state))
-    }
-
-    fn step_size(&self) -> f64 {
-        self.step.h
-    }
-
-    fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
-        self.step.velocity(state, velocity);
-    }
-
-    fn energy(&self, state: &[f64]) -> f64 {
-        self.step.energy(state)
-    }
-
-    fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        self.step.spatial_momentum(state, momentum);
-    }
-
-    fn defect(&self, state: &[f64]) -> f64 {
-        self.step.defect(state)
     }
 }

@@ -1,22 +1,33 @@
-//! The whole step as data: one stepper of any declaration on any group, whose states are numbers.
+//! Steps of any declaration on any group, whose states are slices of numbers.
 //!
-//! The derivation writes a step as straight-line programs ([`WholeStep`](liestep_derivation::whole::WholeStep)); a back end
-//! runs them, and the driver here compares and copies what they return. It makes the decisions of the library's own solve, in
-//! their order, so that a step has the bits of the compiled one on the groups that the library has.
+//! [`Whole`] is one stepper for all declarations that are texts. The derivation writes a step as straight-line programs,
+//! from the generators of the group alone; this room runs them, compares numbers and decides: how often to iterate, whether
+//! a Jacobian serves twice, whether a solution continues the identity, when rounding errors are taken back. It knows no
+//! group.
 //!
-//! Two invariants: nothing here knows a group, its rows or its generators; and an error leaves the state as it was.
+//! # Invariants
 //!
-//! The files depend on each other in one direction: `composed → stepper → {solve, start} → family`.
+//! - The decisions are those of the compiled step, in the same order, so that both make the same steps to the bit: on SO(3),
+//!   products, SE(2) and SE(3), solves with care included. From five rows on they differ by rounding, as pivots of an
+//!   inverse are taken on the diagonal.
+//! - Code and texts are shared. What depends on numbers and on `h` are the constants alone, so that a sweep derives once.
+//! - An error leaves a state as it was, and slices of wrong lengths are errors.
 //!
-//! Differences to a compiled step: on five rows or more by rounding; and an increment beyond a right angle, which the
-//! library looks at once more, is refused.
+//! Deliberately not here: splittings, collocation, joints and systems, densities, compensated sums. They are typed, and
+//! behind the same [`Propagator`](liestep::motion::Propagator).
+//!
+//! The files depend on each other in one direction: `stepper → composed → step → diagnosis → {care → iteration, constants} →
+//! limit → {codes, linear}`.
 
+mod care;
+mod codes;
 mod composed;
-mod family;
-mod solve;
-mod start;
+mod constants;
+mod diagnosis;
+mod iteration;
+mod limit;
+mod linear;
+mod step;
 mod stepper;
 
-pub use composed::WholeComposed;
-pub use family::WholeFamily;
-pub use stepper::Whole;
+pub use stepper::{Whole, WholeError};

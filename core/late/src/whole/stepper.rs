@@ -1,340 +1,377 @@
-//! The stepper: one step with its numbers folded into constants.
+//! The stepper: a declaration with numbers, a step and a method.
 
 use std::sync::Arc;
 
-use liestep::__private::{largest_fraction, six_digits};
-use liestep::motion::{Layout, Propagator, StepReport};
+use liestep::__private::largest_fraction;
+use liestep::motion::{Cost, Layout, Propagator, Remedy, StepReport};
+use liestep::with::{Method, Scheme};
 use liestep::{SetupError, StepError};
 use liestep_derivation::Array;
-use liestep_derivation::whole::Form;
+use thiserror::Error;
 
-use super::family::{NOTHING, Name, WholeFamily};
-use super::solve::{Scratch, determinant};
-use crate::code::Backend;
+use super::codes::{Codes, rare};
+use super::composed::Stages;
+use super::diagnosis::Step;
+use super::linear::are_finite;
+use super::step::Numbered;
+use crate::code::{Backend, Interpreter};
+use crate::declaration::Declaration;
+use crate::error::LateError;
 
-/// A determinant is safe above this part of that at rest; and the part of `1/ε` that a target may have of the Jacobian.
-const SAFE: f64 = 1.0 / 16.0;
-const RATIO: f64 = 1.0 / 4096.0;
-/// The numbers of steps between two corrections of an attitude's rounding errors, for one body and for several, and the
-/// tolerated distance from the group, in roundings, for one.
-const STEPS_BETWEEN_CHECKS: [u64; 2] = [1024, 64];
-const TOLERATED: f64 = 2048.0;
-
-/// The stepper of a declaration on any group, whose states are numbers; it is a [`Propagator`].
+/// A stepper of a declaration on any group, whose states are slices of numbers.
+///
+/// Groups by generators that are written in the text are among them, and any advected parameters. `B` runs the programs of a
+/// step. Steppers of one declaration share its code, see [`with`](Self::with).
 ///
 /// # Examples
 ///
-/// A free body on SL(3), the group of linear maps of volume one, of which the library has no type: its momentum in space is
-/// conserved to rounding.
+/// A motion on SL(3), whose group is a part of the text.
 ///
 /// ```
 /// use liestep::motion::Propagator as _;
-/// use liestep_late::{Declaration, Interpreter, Whole, WholeFamily};
+/// use liestep_late::{Declaration, Whole};
 ///
-/// let text = "
-///     #[lagrangian(
-///         group(F = Own, generators = [
-///             [[0, 1, 0], [0, 0, 0], [0, 0, 0]], [[0, 0, 1], [0, 0, 0], [0, 0, 0]],
-///             [[0, 0, 0], [1, 0, 0], [0, 0, 0]], [[0, 0, 0], [0, 0, 1], [0, 0, 0]],
-///             [[0, 0, 0], [0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 0, 0], [0, 1, 0]],
+/// let flow = Declaration::parse(
+///     "#[lagrangian(
+///         group = SL3,
+///         generators = [
+///             [[0, 1, 0], [0, 0, 0], [0, 0, 0]], [[0, 0, 1], [0, 0, 0], [0, 0, 0]], [[0, 0, 0], [0, 0, 1], [0, 0, 0]],
+///             [[0, 0, 0], [1, 0, 0], [0, 0, 0]], [[0, 0, 0], [0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 0, 0], [0, 1, 0]],
 ///             [[1, 0, 0], [0, -1, 0], [0, 0, 0]], [[0, 0, 0], [0, 1, 0], [0, 0, -1]],
-///         ]),
-///         l_d = (((F - I) * J * (F - I).transpose()).trace() + ((inverse(F) - I) * J * (inverse(F) - I).transpose()).trace()) / (4 * h),
+///         ],
+///         l_d = (((F - I) * J * (F - I).transpose()).trace()
+///             + ((I - inverse(F)) * J * (I - inverse(F)).transpose()).trace()) / (4 * h),
 ///     )]
-///     struct Fluid { J: NonstandardInertia }";
-/// # let _ = text;
+///     struct Flow { J: Matrix3<f64> }",
+/// )?;
+/// let numbers = flow.numbers(&[("J", &[1.0, 0.1, 0.0, 0.1, 1.2, 0.0, 0.0, 0.0, 1.5])])?;
+/// let stepper: Whole = Whole::of(flow, &numbers, 0.01, "composition Suzuki 4".parse()?)?;
+/// let identity = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+/// let mut state = stepper.start(&identity, &[0.1, 0.2, -0.1, 0.3, 0.0, 0.1, -0.2, 0.1])?;
+/// let energy = stepper.energy(&state);
+/// stepper.run(&mut state, 100)?;
+/// assert!((stepper.energy(&state) - energy).abs() < 1e-9 * energy);
+/// assert!(stepper.defect(&state) < 1e-13);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Clone, Debug)]
-pub struct Whole<B: Backend<f64>> {
-    pub(super) family: Arc<WholeFamily<B>>,
-    pub(super) h: f64,
-    pub(super) numbers: Arc<[f64]>,
-    pub(super) constants: Vec<f64>,
-    /// Whether there is one factor, so that its determinant isn't relative to the diagonal.
-    pub(super) is_one: bool,
-    /// The determinant above which a solve needs no second Jacobian, if the inertia is constant.
-    safe: f64,
-    /// The trace of the Newton Jacobian at rest.
-    pub(super) trace: f64,
-    /// The square of a target far beyond those of steps that have a solution.
-    largest: f64,
+#[derive(Debug)]
+pub struct Whole<B: Backend<f64> = Interpreter> {
+    codes: Arc<Codes<B>>,
+    numbers: Arc<[f64]>,
+    h: f64,
+    method: Method,
+    stages: Stages,
+}
+
+impl<B: Backend<f64>> Clone for Whole<B> {
+    fn clone(&self) -> Self {
+        let (codes, numbers, stages) = (Arc::clone(&self.codes), Arc::clone(&self.numbers), self.stages.clone());
+        Self { codes, numbers, h: self.h, method: self.method, stages }
+    }
+}
+
+/// The reason why a declaration has no stepper with these numbers.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum WholeError {
+    /// The declaration has no step.
+    #[error(transparent)]
+    Declaration(#[from] LateError),
+    /// The numbers, the step or the method can't be used.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
 }
 
 /// A state of another layout.
-pub(super) const OF_THIS_LAYOUT: StepError = StepError::NonFinite { what: "state of this layout" };
+const OF_THIS_LAYOUT: StepError = StepError::NonFinite { what: "state of this layout" };
 
 impl<B: Backend<f64>> Whole<B> {
-    /// The stepper of these numbers, those of all parameters in order, by the step `h`, s.
+    /// The stepper of a declaration with the [numbers](Declaration::numbers) of all its parameters and the step `h`, s. Code is
+    /// written for the first one of a declaration.
+    ///
+    /// The method is the [step](Scheme::Step) or a [composition](Scheme::Composition), with or without
+    /// [substeps](Method::substeps).
     ///
     /// # Errors
     ///
-    /// The errors of [`Stepper::new`](liestep::Stepper::new), and [`SetupError::Length`] for another count of numbers.
-    pub fn new(family: &Arc<WholeFamily<B>>, numbers: &[f64], h: f64) -> Result<Self, SetupError> {
-        family.check(numbers)?;
-        if !(h.is_finite() && (h == 0.0 || h.recip().is_finite())) {
-            return Err(SetupError::InvalidStep { step: h });
+    /// The declaration has no kinetic part or is too large; the errors of [`Stepper::new`](liestep::Stepper::new).
+    pub fn of(declaration: &'static Declaration, numbers: &[f64], h: f64, method: Method) -> Result<Self, WholeError> {
+        let (expected, found) = (declaration.count(), numbers.len());
+        if expected != found {
+            return Err(LateError::Size { name: declaration.name.clone(), expected, found }.into());
         }
-        let spatial = family.seen(numbers, &family.identity());
-        if family.declaration.has_constant_inertia {
-            family.check_inertia(&family.inertia(numbers, &spatial))?;
-        }
-        let folded = |h: f64| {
-            let step = [h];
-            family.outputs(Name::Constants, &[], [(Array::Step, &step[..]), (Array::Parameters, numbers), NOTHING])
-        };
-        let constants = folded(h);
-        let are_finite = |constants: &[f64]| constants.iter().all(|number| number.is_finite());
-        if h != 0.0 && !are_finite(&constants) && !are_finite(&folded(1.0)) {
-            return Err(SetupError::NonFiniteConstant);
-        }
-        let rest = family.outputs(Name::Rest, &constants, [(Array::Advected, &spatial[..]), NOTHING]);
-        let (trace, pairs) = rest.split_first().map_or((f64::NAN, &[][..]), |(trace, pairs)| (*trace, pairs));
-        let is_one = family.factors.len() == 1;
-        let at_rest = determinant(pairs, is_one);
-        let in_steps = (0..family.sizes.n).fold(at_rest, |product, _| product / h);
-        let is_in_range = if family.declaration.has_constant_inertia && is_one {
-            in_steps.is_finite() && in_steps != 0.0
-        } else {
-            (trace / h).is_finite()
-        };
-        if h != 0.0 && !is_in_range {
-            return Err(SetupError::InvalidStep { step: h });
-        }
-        let largest = trace / h * (2.0 * RATIO) / f64::EPSILON;
-        let largest = if h == 0.0 { 0.0 } else { largest * largest };
-        let family = Arc::clone(family);
-        Ok(Self { family, h, numbers: numbers.into(), constants, is_one, safe: at_rest * SAFE, trace, largest })
+        Ok(Self::shared(&Codes::of(declaration)?, numbers.into(), h, method)?)
     }
 
-    /// The stepper of the same numbers by another step.
-    pub(super) fn of_step(&self, h: f64) -> Result<Self, SetupError> {
-        Self::new(&self.family, &self.numbers, h)
-    }
-
-    /// The family of steppers of the same declaration.
-    #[must_use]
-    pub const fn family(&self) -> &Arc<WholeFamily<B>> {
-        &self.family
-    }
-
-    /// A state from an attitude and a body momentum, as by
-    /// [`Stepper::start_with_momentum`](liestep::Stepper::start_with_momentum).
+    /// The stepper of the same declaration and method with other numbers, or another step, by the same code.
+    ///
+    /// A state of this one may be continued; if a value in space is another, start anew or [adopt](Propagator::adopt) it, as
+    /// states contain these values as they are seen from the body.
     ///
     /// # Errors
     ///
-    /// As there, and [`SetupError::Length`].
-    pub fn start_with_momentum(&self, attitude: &[f64], momentum: &[f64]) -> Result<Box<[f64]>, SetupError> {
-        let (family, sizes) = (&self.family, &self.family.sizes);
-        for (what, list, expected) in [("attitude", attitude, sizes.entries), ("momentum", momentum, sizes.n)] {
-            if list.len() != expected {
-                return Err(SetupError::Length { what, found: list.len(), expected });
+    /// The errors of [`Stepper::new`](liestep::Stepper::new).
+    pub fn with(&self, numbers: &[f64], h: f64) -> Result<Self, SetupError> {
+        check_length("parameters", numbers, self.numbers.len())?;
+        Self::shared(&self.codes, numbers.into(), h, self.method)
+    }
+
+    fn shared(codes: &Arc<Codes<B>>, numbers: Arc<[f64]>, h: f64, method: Method) -> Result<Self, SetupError> {
+        let scheme = match method.scheme {
+            Scheme::Step => None,
+            Scheme::Composition(scheme) => Some(scheme),
+            _ => {
+                let cause = "isn't known for declarations that are read: take \"step\" or a \"composition\"";
+                return Err(SetupError::Method { cause });
             }
+        };
+        if method.compensated || method.floor.is_some() {
+            let cause = "has a wrapper that isn't known for declarations that are read: take \"substeps\" or none";
+            return Err(SetupError::Method { cause });
         }
-        family.check_attitude(attitude)?;
-        if !momentum.iter().all(|number| number.is_finite()) {
+        let stages = Stages::of(codes, &numbers, h, scheme)?;
+        Ok(Self { codes: Arc::clone(codes), numbers, h, method, stages })
+    }
+
+    /// The declaration.
+    #[must_use]
+    pub fn declaration(&self) -> &'static Declaration {
+        self.codes.declaration
+    }
+
+    /// The numbers of all parameters.
+    #[must_use]
+    pub fn numbers(&self) -> &[f64] {
+        &self.numbers
+    }
+
+    /// The method.
+    #[must_use]
+    pub const fn method(&self) -> Method {
+        self.method
+    }
+
+    /// Compiles the code of a usual step now that is otherwise compiled after some runs.
+    pub fn prepare(&self) {
+        let code = &self.codes.code;
+        let usual = [&code.target, &code.iterate, &code.again, &code.finish].into_iter().chain(&code.safe);
+        usual.for_each(|program| B::prepare(&program.code));
+    }
+
+    /// The state at the start, from an attitude, as the matrices of its factors row by row, and a momentum in the body frame.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Stepper::start_with_momentum`](liestep::Stepper::start_with_momentum).
+    pub fn start_with_momentum(&self, attitude: &[f64], momentum: &[f64]) -> Result<Box<[f64]>, SetupError> {
+        let sizes = &self.codes.sizes;
+        check_length("attitude", attitude, sizes.entries)?;
+        check_length("momentum", momentum, sizes.n)?;
+        self.check_attitude(attitude)?;
+        if !are_finite(momentum) {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
-        let advected = family.seen(&self.numbers, attitude);
-        if !family.declaration.has_constant_inertia {
-            family.check_inertia(&family.inertia(&self.numbers, &advected))?;
+        let advected = self.codes.seen(&self.numbers, attitude);
+        let limit = self.numbered().limit(&advected);
+        if !self.declaration().has_constant_inertia {
+            limit.check_inertia()?;
         }
-        if !family.declaration.is_quadratic && family.velocity(&self.numbers, momentum, &advected).is_none() {
-            return Err(SetupError::NoVelocity);
-        }
-        let state = self.begun(attitude, momentum, &advected);
-        if !advected.iter().all(|number| number.is_finite()) {
+        limit.check_momentum(momentum)?;
+        let state = self.begin(attitude, momentum);
+        if !are_finite(&state[sizes.advected()..sizes.history()]) {
             return Err(SetupError::NonFinite { what: "view of what is advected" });
         }
-        if !state[sizes.history()..].iter().all(|number| number.is_finite()) {
+        if !are_finite(&state[sizes.history()..]) {
             return Err(SetupError::NonFinite { what: "velocity of the momentum" });
         }
         Ok(state)
     }
 
-    /// The state whose memory begins here.
-    pub(super) fn begun(&self, attitude: &[f64], momentum: &[f64], advected: &[f64]) -> Box<[f64]> {
-        let sizes = &self.family.sizes;
+    /// Makes one step with other numbers for the parameters, such as prescribed forces or moving values in space; between
+    /// the steps the state has this stepper's own values again. On an error the state is unchanged.
+    ///
+    /// Numbers that are evaluated in the middle of each step leave the scheme of second order.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`](Propagator::step); [`StepError::NonFinite`] if the numbers can't be used.
+    pub fn step_with(&self, state: &mut [f64], numbers: &[f64]) -> Result<StepReport, StepError> {
+        let mut next = self.checked(state)?.to_vec();
+        let driven =
+            self.with(numbers, self.h).map_err(|_| StepError::NonFinite { what: "value given to the step" })?;
+        driven.see(&mut next);
+        let report = driven.step(&mut next)?;
+        self.see(&mut next);
+        state.copy_from_slice(&next);
+        Ok(report)
+    }
+
+    fn numbered(&self) -> Numbered<'_, B> {
+        Numbered { codes: &self.codes, numbers: &self.numbers }
+    }
+
+    /// The state if it has the length of one.
+    fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
+        if state.len() == self.codes.sizes.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
+    }
+
+    fn check_attitude(&self, attitude: &[f64]) -> Result<(), SetupError> {
+        let defect = rare::<B>(&self.codes.code.defect, &[], [(Array::Attitude, attitude), (Array::Half, &[])])[0];
+        // A unit quaternion or a matrix with twelve printed digits passes; NaN fails.
+        if defect <= f64::EPSILON * 1e4 { Ok(()) } else { Err(SetupError::NotInGroup { defect }) }
+    }
+
+    /// The advected parameters of this stepper's numbers, from the attitude of a state.
+    fn see(&self, state: &mut [f64]) {
+        let sizes = &self.codes.sizes;
+        let advected = self.codes.seen(&self.numbers, &state[..sizes.entries]);
+        state[sizes.advected()..sizes.history()].copy_from_slice(&advected);
+    }
+
+    /// The initial state at this attitude and momentum.
+    fn begin(&self, attitude: &[f64], momentum: &[f64]) -> Box<[f64]> {
+        let sizes = &self.codes.sizes;
         let mut state = vec![0.0; sizes.state()].into_boxed_slice();
         state[..sizes.entries].copy_from_slice(attitude);
         state[sizes.momentum()..sizes.advected()].copy_from_slice(momentum);
-        state[sizes.advected()..sizes.history()].copy_from_slice(advected);
-        self.remember(&mut state, momentum, advected);
+        self.see(&mut state);
+        self.forget(&mut state);
         state
     }
 
-    /// Writes the memory of a new start.
-    fn remember(&self, state: &mut [f64], momentum: &[f64], advected: &[f64]) {
-        let sizes = &self.family.sizes;
-        let velocity = self.family.velocity(&self.numbers, momentum, advected);
-        let velocity = velocity.unwrap_or_else(|| self.family.near_rest(&self.numbers, momentum, advected));
-        for (k, xi) in velocity.into_iter().enumerate() {
-            let half = xi * (self.h * 0.5);
-            state[sizes.history() + k] = half;
-            state[sizes.history() + sizes.n + k] = 0.0;
-            state[sizes.guess() + k] = half;
+    /// Writes the memory of a new start: an estimate of half the coordinates of the first increment.
+    fn forget(&self, state: &mut [f64]) {
+        let sizes = &self.codes.sizes;
+        let (moving, memory) = state.split_at_mut(sizes.history());
+        let limit = self.numbered().limit(&moving[sizes.advected()..]);
+        let velocity = limit.estimated_velocity(&moving[sizes.momentum()..sizes.advected()]);
+        let half_step = self.stages.first().h * 0.5;
+        for (k, velocity) in velocity.iter().enumerate() {
+            (memory[k], memory[sizes.n + k], memory[2 * sizes.n + k]) =
+                (velocity * half_step, 0.0, velocity * half_step);
         }
     }
 
-    /// The determinant above which a solve needs no second Jacobian.
-    pub(super) fn safe_at(&self, advected: &[f64]) -> f64 {
-        if !self.family.has(Name::Safe) {
-            return self.safe;
+    /// One step of a state of the right length.
+    #[inline]
+    fn step_in(&self, state: &mut [f64], room: &mut [f64]) -> Result<StepReport, StepError> {
+        match self.stages.step(self.numbered(), state, room) {
+            Ok(iterations) => Ok(StepReport::of(iterations)),
+            Err(error) => self.in_parts(state, error),
         }
-        let given = [(Array::Parameters, &self.numbers[..]), (Array::Advected, advected), NOTHING];
-        determinant(&self.family.outputs(Name::Safe, &[], given), self.is_one) * SAFE
     }
 
-    /// One step; the iterations.
-    pub(super) fn advance(&self, state: &mut [f64], scratch: &mut Scratch) -> Result<u32, StepError> {
-        let sizes = &self.family.sizes;
-        if state.len() != sizes.state() {
-            return Err(OF_THIS_LAYOUT);
+    /// Makes the step in equal parts, if the method says so; otherwise the error, for the whole step.
+    #[cold]
+    #[inline(never)]
+    fn in_parts(&self, state: &mut [f64], error: StepError) -> Result<StepReport, StepError> {
+        if matches!(error, StepError::NonFinite { .. }) {
+            return Err(error);
         }
-        if self.h == 0.0 {
-            state[sizes.state() - 1] += 1.0;
-            return Ok(0);
+        let mut parts = 2;
+        while parts <= self.method.substeps {
+            if let Some((mut next, iterations)) = self.substepped(state, parts) {
+                let last = next.len() - 1;
+                next[last] = state[last] + 1.0;
+                // The increment of a part doesn't predict that of a whole step.
+                self.forget(&mut next);
+                state.copy_from_slice(&next);
+                return Ok(StepReport { iterations, remedy: Some(Remedy::Substeps(parts)) });
+            }
+            let Some(more) = parts.checked_mul(2) else { break };
+            parts = more;
         }
+        Err(self.explained(state, error))
+    }
+
+    /// The state after so many steps of an equal part of `h`, and the sum of their iterations.
+    fn substepped(&self, state: &[f64], parts: u32) -> Option<(Vec<f64>, u32)> {
+        let small = self.of_length(self.h / f64::from(parts)).ok()?;
+        let (mut next, mut room) = (state.to_vec(), vec![0.0; small.room()]);
+        let last = next.len() - 1;
+        next[last] = 0.0;
+        small.forget(&mut next);
+        let mut iterations = 0;
+        for _ in 0..parts {
+            iterations += small.stages.step(small.numbered(), &mut next, &mut room).ok()?;
+        }
+        Some((next, iterations))
+    }
+
+    /// The error of the whole step for that of a stage: it names the largest solvable step.
+    fn explained(&self, state: &[f64], error: StepError) -> StepError {
+        if self.stages.count() == 1 || !matches!(error, StepError::BeyondSolvable { .. }) {
+            return error;
+        }
+        let solvable = |fraction: f64| {
+            self.of_length(self.h * fraction).is_ok_and(|part| {
+                let (mut next, mut room) = (state.to_vec(), vec![0.0; part.room()]);
+                part.forget(&mut next);
+                part.stages.step(part.numbered(), &mut next, &mut room).is_ok()
+            })
+        };
+        let largest = largest_fraction(solvable).map_or(0.0, |fraction| self.h * fraction);
+        let Ok(whole) = Stages::of(&self.codes, &self.numbers, self.h, None) else { return error };
+        let (codes, sizes) = (&*self.codes, &self.codes.sizes);
         let (momentum, advected) =
             (&state[sizes.momentum()..sizes.advected()], &state[sizes.advected()..sizes.history()]);
-        self.aim(momentum, advected, scratch);
-        let guess = &state[sizes.guess()..sizes.guess() + sizes.n];
-        scratch.half.copy_from_slice(guess);
-        let found = self.iterate(advected, self.safe_at(advected), 20, scratch);
-        let is_usual = found.is_settled && found.determinant > 0.0 && scratch.target[sizes.n] < self.largest;
-        let mut iterations = found.iterations;
-        let mut is_far = is_usual.then(|| self.finish(state, scratch)).flatten();
-        if is_far.is_none() {
-            let guess = guess.to_vec();
-            iterations = self
-                .solve_carefully(advected, &guess, scratch)
-                .map_err(|error| self.explained(error, momentum, advected))?;
-            is_far = self.finish(state, scratch);
-        }
-        let Some(is_far) = is_far else { return Err(StepError::NonFinite { what: "momentum after the step" }) };
-        let (new, steps) = (sizes.state() - 1, state[sizes.state() - 1]);
-        state[..new].copy_from_slice(&scratch.end[..new]);
-        if is_far {
-            state.copy_within(sizes.history()..sizes.history() + sizes.n, sizes.guess());
-        }
-        let is_several = self.rotations().count() > 1;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
-        if (steps as u64).is_multiple_of(STEPS_BETWEEN_CHECKS[usize::from(is_several)]) {
-            self.look(state, steps, if is_several { 0.0 } else { TOLERATED });
-        }
-        state[new] = steps + 1.0;
-        Ok(iterations)
+        let step = Step { codes, numbers: &self.numbers, constants: whole.first(), momentum, advected };
+        step.beyond_solvable(largest)
     }
 
-    /// Writes the state after the step behind the iterate; whether the increment is far from the identity, or none where it is
-    /// too far or a number isn't finite.
-    fn finish(&self, state: &[f64], scratch: &mut Scratch) -> Option<bool> {
-        let sizes = &self.family.sizes;
-        let given = [
-            (Array::Half, &scratch.half[..]),
-            (Array::Target, &scratch.target[..sizes.n]),
-            (Array::Advected, &state[sizes.advected()..sizes.history()]),
-            (Array::Momentum, &state[sizes.momentum()..sizes.advected()]),
-            (Array::Attitude, &state[..sizes.entries]),
-            (Array::History, &state[sizes.history()..sizes.guess()]),
-        ];
-        self.family.run(Name::Finish, &self.constants, given, &mut scratch.end);
-        let others = &scratch.end[sizes.state() - 1..];
-        if !others[0].is_finite() {
-            return None;
-        }
-        let is_far = others[1..].iter().any(|near| !(near * 9.0 < 1.0));
-        let is_near = !is_far || others[1..].iter().all(|near| near * 4.0 < 1.0);
-        is_near.then_some(is_far)
+    /// The same stepper for another step.
+    fn of_length(&self, h: f64) -> Result<Self, SetupError> {
+        Self::shared(&self.codes, Arc::clone(&self.numbers), h, self.method)
     }
 
-    /// The factors that are restored: rotations of bodies, as in the library.
-    fn rotations(&self) -> impl Iterator<Item = &liestep_derivation::whole::MatrixFactor> {
-        self.family.factors.iter().filter(|factor| factor.form == Form::Rotation)
+    fn room(&self) -> usize {
+        self.stages.room(&self.codes)
     }
 
-    /// The rare work after the first step, and after a fixed number of further ones: attitudes that roundings have taken
-    /// farther from the group than `beyond` are restored.
-    #[cold]
-    fn look(&self, state: &mut [f64], steps: f64, beyond: f64) {
-        let (family, sizes) = (&self.family, &self.family.sizes);
-        if steps == 0.0 {
-            state.copy_within(sizes.history()..sizes.history() + sizes.n, sizes.guess());
-            state[sizes.history() + sizes.n..sizes.guess()].fill(0.0);
-        }
-        let nearer = family.outputs(Name::Restored, &[], [(Array::Attitude, &state[..sizes.entries])]);
-        let (mut rest, mut is_changed) = (&nearer[..], false);
-        for factor in family.factors.iter().filter(|factor| factor.is_restored()) {
-            let (own, behind) = rest.split_at(1 + factor.size() * factor.size());
-            rest = behind;
-            if factor.form == Form::Rotation && own[0] > f64::EPSILON * beyond {
-                state[factor.entry..factor.entry + own.len() - 1].copy_from_slice(&own[1..]);
-                is_changed = true;
-            }
-        }
-        if is_changed {
-            let advected = family.seen(&self.numbers, &state[..sizes.entries]);
-            state[sizes.advected()..sizes.history()].copy_from_slice(&advected);
+    /// Calls a function with the room of a step, on the stack unless it is large.
+    #[inline]
+    fn in_room<R>(&self, run: impl FnOnce(&mut [f64]) -> R) -> R {
+        match self.room() {
+            size @ 0..=96 => run(&mut [0.0; 96][..size]),
+            size @ 97..=384 => run(&mut [0.0; 384][..size]),
+            size => run(&mut vec![0.0; size]),
         }
     }
+}
 
-    /// The error of a failed solve, which names the largest solvable step if there is one.
-    #[cold]
-    fn explained(&self, error: StepError, momentum: &[f64], advected: &[f64]) -> StepError {
-        let is_finite = |list: &[f64]| list.iter().all(|number| number.is_finite());
-        if !is_finite(momentum) {
-            return StepError::NonFinite { what: "momentum" };
-        }
-        if !is_finite(advected) {
-            return StepError::NonFinite { what: "advected parameter" };
-        }
-        let solvable =
-            |fraction: f64| self.of_step(self.h * fraction).is_ok_and(|part| part.is_solvable(momentum, advected));
-        let Some(fraction) = largest_fraction(solvable) else { return error };
-        let mut scratch = self.scratch();
-        self.aim(momentum, advected, &mut scratch);
-        let kicked = &scratch.target[..self.family.sizes.n];
-        let velocity = self.family.velocity(&self.numbers, kicked, advected);
-        let velocity = velocity.unwrap_or_else(|| self.family.near_rest(&self.numbers, kicked, advected));
-        let turning = velocity.iter().enumerate().filter(|(component, _)| self.family.turns(*component));
-        let turn = turning.map(|(_, xi)| (xi * self.h) * (xi * self.h)).sum::<f64>().sqrt();
-        StepError::BeyondSolvable { step: self.h, largest: six_digits(self.h * fraction), turn, body: None }
-    }
+fn check_length(what: &'static str, numbers: &[f64], expected: usize) -> Result<(), SetupError> {
+    let found = numbers.len();
+    if found == expected { Ok(()) } else { Err(SetupError::Length { what, found, expected }) }
 }
 
 impl<B: Backend<f64>> Propagator for Whole<B> {
     fn layout(&self) -> &Layout {
-        &self.family.layout
+        &self.codes.layout
     }
 
     fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
-        let (family, sizes) = (&self.family, &self.family.sizes);
-        for (what, list, expected) in [("attitude", attitude, sizes.entries), ("velocity", velocity, sizes.n)] {
-            if list.len() != expected {
-                return Err(SetupError::Length { what, found: list.len(), expected });
-            }
-        }
-        if !velocity.iter().all(|number| number.is_finite()) {
+        check_length("attitude", attitude, self.codes.sizes.entries)?;
+        check_length("velocity", velocity, self.codes.sizes.n)?;
+        if !are_finite(velocity) {
             return Err(SetupError::NonFinite { what: "velocity" });
         }
-        family.check_attitude(attitude)?;
-        let advected = family.seen(&self.numbers, attitude);
-        let momentum = family.momentum(&self.numbers, velocity, &advected);
-        if !family.declaration.is_quadratic {
-            family.check_velocity(velocity, &momentum, (&self.numbers, &advected))?;
+        self.check_attitude(attitude)?;
+        let advected = self.codes.seen(&self.numbers, attitude);
+        let limit = self.numbered().limit(&advected);
+        let momentum = limit.momentum(velocity);
+        if !self.declaration().is_quadratic {
+            limit.check_velocity(velocity, &momentum)?;
         }
         self.start_with_momentum(attitude, &momentum)
     }
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        self.advance(state, &mut self.scratch()).map(StepReport::of)
+        self.checked(state)?;
+        self.in_room(|room| self.step_in(state, room))
     }
 
     fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
-        let (mut next, mut scratch, mut iterations) = (state.to_vec(), self.scratch(), 0);
-        for _ in 0..steps {
-            iterations += u64::from(self.advance(&mut next, &mut scratch)?);
-        }
+        let mut next = self.checked(state)?.to_vec();
+        let iterations = self.run_stretches(&mut next, steps, &mut |_, _| 0)?;
         state.copy_from_slice(&next);
         Ok(iterations)
     }
@@ -345,46 +382,44 @@ impl<B: Backend<f64>> Propagator for Whole<B> {
         mut steps: u64,
         next: &mut dyn FnMut(&[f64], f64) -> u64,
     ) -> Result<u64, StepError> {
-        let (mut scratch, mut iterations) = (self.scratch(), 0);
-        while steps > 0 {
-            for _ in 0..steps {
-                iterations += u64::from(self.advance(state, &mut scratch)?);
+        self.checked(state)?;
+        self.in_room(|room| {
+            let mut iterations = 0;
+            while steps > 0 {
+                for _ in 0..steps {
+                    iterations += u64::from(self.step_in(state, room)?.iterations);
+                }
+                steps = next(state, self.time(state));
             }
-            steps = next(state, self.time(state));
-        }
-        Ok(iterations)
+            Ok(iterations)
+        })
     }
 
     fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
-        let sizes = &self.family.sizes;
-        if state.len() != sizes.state() {
-            return Err(OF_THIS_LAYOUT);
+        let mut next: Box<[f64]> = self.checked(state)?.into();
+        // So small a change would be lost in rounding, and the constants of so short a step may be out of range.
+        if !(fraction.abs() < f64::EPSILON * f64::EPSILON) {
+            let wrong = |_| StepError::NonFinite { what: "part of the step" };
+            let part = self.of_length(self.h * fraction).map_err(wrong)?;
+            part.forget(&mut next);
+            part.step(&mut next)?;
+            let last = next.len() - 1;
+            next[last] = state[last];
         }
-        let steps = state[sizes.state() - 1];
-        let mut next: Box<[f64]> = state.into();
-        if fraction.abs() >= f64::EPSILON * f64::EPSILON || fraction.is_nan() {
-            let part = self.of_step(self.h * fraction);
-            let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
-            let (momentum, advected) =
-                (&state[sizes.momentum()..sizes.advected()], &state[sizes.advected()..sizes.history()]);
-            part.remember(&mut next, momentum, advected);
-            part.advance(&mut next, &mut part.scratch())?;
-        }
-        let (momentum, advected) =
-            (next[sizes.momentum()..sizes.advected()].to_vec(), next[sizes.advected()..sizes.history()].to_vec());
-        self.remember(&mut next, &momentum, &advected);
-        next[sizes.state() - 1] = steps;
+        self.forget(&mut next);
         Ok(next)
     }
 
     fn adopt(&self, state: &[f64]) -> Box<[f64]> {
-        let sizes = &self.family.sizes;
-        let (Some(attitude), Some(momentum)) =
-            (state.get(..sizes.entries), state.get(sizes.momentum()..sizes.advected()))
-        else {
-            return vec![f64::NAN; sizes.state()].into();
-        };
-        self.begun(attitude, momentum, &self.family.seen(&self.numbers, attitude))
+        let layout = &self.codes.layout;
+        match (state.get(layout.attitude()), state.get(layout.momentum())) {
+            (Some(attitude), Some(momentum)) => self.begin(attitude, momentum),
+            _ => vec![f64::NAN; layout.state()].into(),
+        }
+    }
+
+    fn cost(&self) -> Option<Cost> {
+        Some(self.codes.cost(self.stages.count()))
     }
 
     fn step_size(&self) -> f64 {
@@ -392,40 +427,42 @@ impl<B: Backend<f64>> Propagator for Whole<B> {
     }
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
-        let sizes = &self.family.sizes;
-        let found = (state.len() >= sizes.history()).then(|| {
-            let (momentum, advected) =
-                (&state[sizes.momentum()..sizes.advected()], &state[sizes.advected()..sizes.history()]);
-            self.family.velocity(&self.numbers, momentum, advected)
+        let sizes = &self.codes.sizes;
+        let found = self.checked(state).map(|state| {
+            let limit = self.numbered().limit(&state[sizes.advected()..sizes.history()]);
+            limit.velocity(&state[sizes.momentum()..sizes.advected()])
         });
-        let mut found = found.flatten().into_iter().flatten();
-        velocity.fill_with(|| found.next().unwrap_or(f64::NAN));
+        write_or_nan(found.ok(), velocity);
     }
 
     fn energy(&self, state: &[f64]) -> f64 {
-        let sizes = &self.family.sizes;
-        let mut velocity = vec![0.0; sizes.n];
-        self.velocity(state, &mut velocity);
-        let Some(advected) = state.get(sizes.advected()..sizes.history()) else { return f64::NAN };
-        let given =
-            [(Array::Velocity, &velocity[..]), (Array::Parameters, &self.numbers[..]), (Array::Advected, advected)];
-        self.family.outputs(Name::Energy, &[], given).first().copied().unwrap_or(f64::NAN)
+        let sizes = &self.codes.sizes;
+        self.checked(state).map_or(f64::NAN, |state| {
+            let limit = self.numbered().limit(&state[sizes.advected()..sizes.history()]);
+            limit.energy(&limit.velocity(&state[sizes.momentum()..sizes.advected()]))
+        })
     }
 
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        let sizes = &self.family.sizes;
-        let found = (state.len() >= sizes.advected()).then(|| {
-            let given = [
-                (Array::Attitude, &state[..sizes.entries]),
-                (Array::Momentum, &state[sizes.momentum()..sizes.advected()]),
-            ];
-            self.family.outputs(Name::Spatial, &[], given)
+        let sizes = &self.codes.sizes;
+        let found = self.checked(state).map(|state| {
+            let own = (Array::Momentum, &state[sizes.momentum()..sizes.advected()]);
+            rare::<B>(&self.codes.code.spatial, &[], [(Array::Attitude, &state[..sizes.entries]), own])
         });
-        let mut found = found.into_iter().flatten();
-        momentum.fill_with(|| found.next().unwrap_or(f64::NAN));
+        write_or_nan(found.ok(), momentum);
     }
 
     fn defect(&self, state: &[f64]) -> f64 {
-        state.get(..self.family.sizes.entries).map_or(f64::NAN, |attitude| self.family.defect(attitude))
+        let attitude = |state: &[f64]| {
+            let given = [(Array::Attitude, &state[..self.codes.sizes.entries]), (Array::Half, &[][..])];
+            rare::<B>(&self.codes.code.defect, &[], given)[0]
+        };
+        self.checked(state).map_or(f64::NAN, attitude)
     }
+}
+
+/// Writes these numbers; NaN where there are none.
+fn write_or_nan(found: Option<Vec<f64>>, places: &mut [f64]) {
+    let mut found = found.into_iter().flatten();
+    places.fill_with(|| found.next().unwrap_or(f64::NAN));
 }

@@ -228,7 +228,7 @@ impl MatrixFactor {
     }
 
     /// `F` of `F − I`.
-    fn element(&self, words: &mut Words, d: &Matrix) -> Matrix {
+    pub(super) fn element(&self, words: &mut Words, d: &Matrix) -> Matrix {
         let one = Matrix::identity(self.size());
         self.constant_rows(d.plus(words, &one))
     }

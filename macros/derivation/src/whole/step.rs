@@ -61,46 +61,83 @@ impl Sizes {
     }
 }
 
-/// The programs of a step. Each names its inputs; all but the first may read the constants.
+/// The programs of a step, or code for them. Each names its inputs; all but the first may read the constants.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Programs {
+pub struct Programs<P = Program> {
     /// The constants, of the parameters and the step.
-    pub constants: Program,
+    pub constants: P,
     /// Of momentum and advected: the target `a` of the momentum equation, and `a·a`.
-    pub target: Program,
+    pub target: P,
     /// Of half, target and advected, a Newton iteration: the next half, the squares of the update and of the next half, then
     /// for each block of the Jacobian its determinant and the product of its diagonal, and its factors.
-    pub iterate: Program,
+    pub iterate: P,
     /// Of the same and of the factors with the determinants before them: the next half by the old Jacobian, and both squares.
-    pub again: Program,
+    pub again: P,
     /// Of half, target, momentum, advected, attitude and history: the state without the number of steps, the sum of momentum
     /// and advected, and for each factor whose increment may be far from the identity a number, whose product with the square
     /// of `s` is below one if `s` times the increment is near it.
-    pub finish: Program,
+    pub finish: P,
+    /// Of half, target and advected, for a solve with care: the residual, the Jacobian row by row, the update, and the
+    /// determinant and the product of the diagonal of each block.
+    pub newton: P,
+    /// Of half, step, parameters and advected: the last numbers of [`finish`](Self::finish); then of `h` times the Jacobian
+    /// of the momentum along `exp(t E_j) F` the determinant and the product of the diagonal of each block, and the trace of
+    /// each factor's part.
+    pub branch: P,
     /// Of parameters and advected: determinants and diagonals of the inertia, where it varies.
-    pub safe: Option<Program>,
+    pub safe: Option<P>,
     /// Of the attitude and of the parameters: the advected parameters.
-    pub seen: Program,
+    pub seen: P,
     /// Of the attitude: for each factor that [is restored](MatrixFactor::is_restored) its distance from the group, and a
     /// nearer matrix.
-    pub restored: Program,
+    pub restored: P,
     /// Of the attitude: the sum of the factors' distances from their groups.
-    pub defect: Program,
+    pub defect: P,
     /// Of parameters and advected: the inertia at rest, row by row.
-    pub inertia: Program,
+    pub inertia: P,
     /// Of momentum, parameters and advected: the velocity by the inertia at rest; an estimate where the continuous limit isn't
     /// quadratic.
-    pub velocity: Program,
+    pub velocity: P,
     /// Of velocity, parameters and advected: the momentum.
-    pub momentum: Program,
+    pub momentum: P,
     /// Of the same: the derivative of the momentum by the velocity, where the continuous limit isn't quadratic.
-    pub hessian: Option<Program>,
+    pub hessian: Option<P>,
     /// Of the same: the energy, J.
-    pub energy: Program,
+    pub energy: P,
     /// Of attitude and momentum: the momentum in space.
-    pub spatial: Program,
+    pub spatial: P,
     /// Of advected: the trace of the Jacobian at rest, then its determinants and diagonals.
-    pub rest: Program,
+    pub rest: P,
+}
+
+impl<P> Programs<P> {
+    /// Maps all programs; those of a usual step come first.
+    ///
+    /// # Errors
+    ///
+    /// The first error of the map.
+    pub fn try_map<'a, Q, E>(&'a self, mut make: impl FnMut(&'a P) -> Result<Q, E>) -> Result<Programs<Q>, E> {
+        Ok(Programs {
+            target: make(&self.target)?,
+            iterate: make(&self.iterate)?,
+            again: make(&self.again)?,
+            finish: make(&self.finish)?,
+            safe: self.safe.as_ref().map(&mut make).transpose()?,
+            constants: make(&self.constants)?,
+            newton: make(&self.newton)?,
+            branch: make(&self.branch)?,
+            seen: make(&self.seen)?,
+            restored: make(&self.restored)?,
+            defect: make(&self.defect)?,
+            inertia: make(&self.inertia)?,
+            velocity: make(&self.velocity)?,
+            momentum: make(&self.momentum)?,
+            hessian: self.hessian.as_ref().map(&mut make).transpose()?,
+            energy: make(&self.energy)?,
+            spatial: make(&self.spatial)?,
+            rest: make(&self.rest)?,
+        })
+    }
 }
 
 impl Programs {
@@ -166,6 +203,8 @@ impl Writer<'_> {
             iterate: self.iterate(),
             again: self.again(),
             finish: self.finish(),
+            newton: self.newton(),
+            branch: self.branch(),
             safe: (!self.staged.has_constant_inertia).then_some(safe),
             seen: self.seen(),
             restored: self.restored(),
@@ -200,6 +239,36 @@ impl Writer<'_> {
         words.program(&[next.as_slice(), determinants.as_flattened(), &factors].concat())
     }
 
+    fn newton(&self) -> Program {
+        let (mut words, half) = (Words::default(), Value::inputs(Array::Half, self.dimension()));
+        let (residual, jacobian) = self.system(&mut words, &half, &Value::Input);
+        let Factorisation { factors, determinants } = self.pattern.factorise(&mut words, &jacobian);
+        let update = self.pattern.solve(&mut words, &factors, determinants[0][0], &residual);
+        words.program(&[residual.as_slice(), &jacobian.entries, &update, determinants.as_flattened()].concat())
+    }
+
+    fn branch(&self) -> Program {
+        let (mut words, n) = (Words::default(), self.dimension());
+        let half = Value::inputs(Array::Half, n);
+        let (mut all, d) = (self.nearness(&mut words, &half), self.increments(&mut words, &half));
+        let factors = self.factors.iter().zip(&d);
+        let elements: Vec<Value> = factors.flat_map(|(factor, d)| factor.element(&mut words, d).entries).collect();
+        let read = |source: Source| match source.array {
+            Array::Element => elements[source.at],
+            _ => Value::Input(source),
+        };
+        let jacobian = self.with_increments(&mut words, &self.staged.programs.momentum_jacobian, &d, &read);
+        let step = Value::Input(Source::new(Array::Step, 0));
+        let jacobian = Matrix { rows: n, columns: n, entries: jacobian }.scaled(&mut words, step);
+        let determinants = self.pattern.factorise(&mut words, &jacobian).determinants;
+        all.extend(determinants.as_flattened());
+        for factor in &self.factors {
+            let own = factor.component..factor.component + factor.dimension();
+            all.push(own.fold(Value::ZERO, |sum, k| words.add(sum, jacobian.at(k, k))));
+        }
+        words.program(&all)
+    }
+
     fn again(&self) -> Program {
         let (mut words, n) = (Words::default(), self.dimension());
         let half = Value::inputs(Array::Half, n);
@@ -232,9 +301,12 @@ impl Writer<'_> {
         let second = words.subtracted(&differences, &history[n..]);
         let both = words.added(&differences, &second);
         let guess = words.added(&half, &both);
-        let near: Vec<Value> =
-            self.factors.iter().filter_map(|factor| factor.nearness(&mut words, factor.own(&half))).collect();
+        let near = self.nearness(&mut words, &half);
         words.program(&[attitude, momentum, next, half, differences, guess, vec![sum], near].concat())
+    }
+
+    fn nearness(&self, words: &mut Words, half: &[Value]) -> Vec<Value> {
+        self.factors.iter().filter_map(|factor| factor.nearness(words, factor.own(half))).collect()
     }
 
     /// The momentum after the step: `μ + (Ad*_F a − a) + (a − μ)` and the kick after the solve.
