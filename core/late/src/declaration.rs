@@ -125,6 +125,27 @@ impl Declaration {
         Self::kept(text, || Self::derived(text))
     }
 
+    /// An attitude displaced by small coordinates of the algebra, `g (I + ξ̂)`, by which the growth of rounding errors is
+    /// measured; the entries of the attitude and of the result are the matrices of the factors, row by row.
+    #[must_use]
+    pub fn displaced(&self, attitude: &[f64], coordinates: &[f64]) -> Vec<f64> {
+        let (mut displaced, mut first, mut rest) = (attitude.to_vec(), 0, coordinates);
+        for factor in &self.factors {
+            let entries = factor.generators.first().map_or(0, Vec::len);
+            let rows = (1..=entries).find(|rows| rows * rows >= entries).unwrap_or(1);
+            let (own, behind) = rest.split_at(factor.generators.len().min(rest.len()));
+            for (generator, xi) in factor.generators.iter().zip(own) {
+                for at in 0..entries {
+                    let products =
+                        (0..rows).map(|k| attitude[first + at / rows * rows + k] * generator[k * rows + at % rows]);
+                    displaced[first + at] += products.sum::<f64>() * xi;
+                }
+            }
+            (first, rest) = (first + entries, behind);
+        }
+        displaced
+    }
+
     /// The sum of declarations on one group as one declaration, whose programs add the outputs of theirs. On SO(3) it
     /// has the bits of the same sum of compiled effects; if the retraction's tangent is taken after the sum, it
     /// differs by roundings.

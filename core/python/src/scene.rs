@@ -9,7 +9,7 @@ use liestep::motion::AnyStepper;
 use liestep::numbers::Entries as _;
 use liestep::with::{Method, Steppable};
 use liestep::{SO3, SetupError, Stepper};
-use liestep_late::{Declaration, LateError, Role, Slots, Whole, WholeComposed, WholeFamily};
+use liestep_late::{Declaration, LateError, Role, Slots, Whole, WholeError};
 use nalgebra::SVector;
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
@@ -138,36 +138,46 @@ impl Scene {
     }
 }
 
-/// A declaration on any group, whose step is data.
-impl Steps for Arc<WholeFamily<Backend>> {
+/// A declaration on any group, whose step is data: its first stepper has the code that all share.
+struct Data(&'static Declaration);
+
+impl Data {
+    fn whole(&self, numbers: &[f64], method: Method, h: f64) -> Result<AnyStepper, WholeError> {
+        Whole::<Backend>::of(self.0, numbers, h, method).map(AnyStepper::new)
+    }
+}
+
+impl Steps for Data {
     fn stepper(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
-        whole(self, numbers, method, h).map_err(|error| Failure::setup(&error))
+        Ok(self.whole(numbers, method, h)?)
     }
 
     fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<(AnyStepper, Choice), Failure> {
-        let factors = &self.layout().factors;
+        let stepper = self.stepper(numbers, (Method::default(), accuracy.horizon))?;
+        let factors = &stepper.layout().factors;
         let (attitude, velocity) = (start.attitude(factors)?, start.velocity(factors)?);
         let candidate = |scheme| {
-            let (family, numbers) = (Self::clone(self), numbers.to_vec());
-            Candidate { scheme, make: Box::new(move |h| whole(&family, &numbers, Method::from(scheme), h)) }
+            let (own, numbers) = (Self(self.0), numbers.to_vec());
+            let make = move |h| match own.whole(&numbers, Method::from(scheme), h) {
+                Ok(stepper) => Ok(stepper),
+                Err(WholeError::Setup(error)) => Err(error),
+                Err(_) => Err(SetupError::Method { cause: "has no step of this declaration; take another" }),
+            };
+            Candidate { scheme, make: Box::new(make) }
         };
-        let candidates: Vec<_> = of_any_group(self.declaration().is_self_adjoint).map(candidate).collect();
-        let beside = self.displaced(&attitude, &displacement(velocity.len()));
+        let candidates: Vec<_> = of_any_group(self.0.is_self_adjoint).map(candidate).collect();
+        let beside = self.0.displaced(&attitude, &displacement(velocity.len()));
         choose(&candidates, accuracy, [&attitude, &beside], velocity).map_err(|error| Failure::setup(&error))
     }
 }
 
-/// The stepper of a step as data by a method that every group has.
-fn whole(
-    family: &Arc<WholeFamily<Backend>>,
-    numbers: &[f64],
-    method: Method,
-    h: f64,
-) -> Result<AnyStepper, SetupError> {
-    Ok(match method.composition()? {
-        None => AnyStepper::new(Whole::new(family, numbers, h)?),
-        Some(scheme) => AnyStepper::new(WholeComposed::new(family, numbers, h, scheme)?),
-    })
+impl From<WholeError> for Failure {
+    fn from(error: WholeError) -> Self {
+        match error {
+            WholeError::Declaration(error) => error.into(),
+            WholeError::Setup(error) => Self::setup(&error),
+        }
+    }
 }
 
 /// The steps of a declaration, if its group and its advected parameters are these types.
@@ -209,6 +219,5 @@ pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<S
             SO3: V<3>, Four, WithEnergy;
         }
     }
-    let family = WholeFamily::<Backend>::of(sum)?;
-    Ok(Scene { steps: Arc::new(family), declaration: sum, numbers: numbers.to_vec(), has_force })
+    Ok(Scene { steps: Arc::new(Data(sum)), declaration: sum, numbers: numbers.to_vec(), has_force })
 }
