@@ -26,34 +26,11 @@ fn seeds() -> Vec<String> {
     let mut paths: Vec<_> = fs::read_dir(scenes).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     paths.sort();
-    let all = "title = \"all\"\nbody.J = [[3, 0.1, 0], [0.1, 4, 0], [0, 0, 5]]\nbody.kinetic = \"cayley\"\n\
-               [gravity]\nm = 1\ng = 9.81\nrho = [0, 0, 1]\nup = [0, 0, 1]\n\
-               [gravity_gradient]\nGM = 2\nr = 3\ndirection = [1, 0, 0]\n\
-               [dipole]\nmoment = [0, 0.1, 1]\nfield = [0.2, 0, 1]\n\
-               [spring]\nk = 3\nlength = 0.5\nat = [0, 0, 1]\nanchor = [1, 0.3, 0.5]\n[rotor]\nspin = [0, 0.4, 1]\n\
-               [drag]\nc = 0.1\n[magnetic_damping]\nk = 0.1\nfield = [0, 0.5, 1]\n[torque]\ntorque = [0.1, 0.2, -0.1]\n\
-               [thrust]\nat = [0, 0, \"1 cm\"]\nthrust = [1, 0, 0]\n[start]\nquaternion = [1, 0, 0, 0.5]\nvelocity = [0, 0, 1]\n\
-               [run]\nstep = 0.01\nduration = 1\nmethod = \"step\"\n[output]\ncolumns = [\"axis\", \"quaternion\"]\nevery = 3\n\
-               [[event]]\nname = \"fast\"\nspeed = 1.5\ndirection = \"rising\"\n[[event]]\nname = \"low\"\ntilt = \"60 deg\"\nstop = true\n\
-               [ensemble]\nmembers = 3\nevery = 10\ndraw.gravity.m = { mean = 1, deviation = 0.1 }\n\
-               draw.start.velocity = [{ from = -1, to = 1 }, 0, { mean = 1, deviation = 0.5 }]\n\
-               [sweep]\ngravity.m = [1, 2]\nspring.k = { from = 1, to = 2, count = 3 }\n";
-    let split = "title = \"split\"\n[body]\nmoments = [1, 2, 2.5]\n[dipole]\nmoment = [0, 0.1, 1]\nfield = [0.2, 0, 1]\n\
-                 [start]\nyaw_pitch_roll = [0, 0, 0]\nvelocity = [0, 1, 0]\n[run]\nstep = 0.01\nduration = 1\n\
-                 method = { splitting = \"Nyström 6-4\" }\n";
-    let held = "title = \"held\"\n[gravity]\ng = 9.81\nup = [0, 0, 1]\n\
-                [[body]]\nname = \"a\"\nm = 1\nmoments = [1, 2, 2.5]\nposition = [0, 0, 0.5]\nmoving = [0, -0.5, 0]\n\
-                start.euler = [0, 0, 0]\nstart.velocity = [1, 0, 0]\n[[body]]\nname = \"b\"\nm = 2\n\
-                J = [[3, 0.1, 0], [0.1, 4, 0], [0, 0, 5]]\nposition = [0, 0, 2]\nstart.quaternion = { w = 1, x = 0, y = 0, z = 0 }\nkinetic = \"cayley\"\n\
-                start.velocity = [0, 0, 0]\n[[joint]]\nkind = \"pin\"\nbodies = [\"space\", \"a\"]\n\
-                at = [[0, 0, 0], [0, 0, -0.5]]\naxes = [[1, 0, 0], [1, 0, 0]]\n[[spring]]\nbodies = [\"a\", \"b\"]\n\
-                at = [[0, 0, 0.5], [0, 0.1, -0.5]]\nk = 30\nlength = 0.4\n[[joint]]\nkind = \"ball\"\n\
-                bodies = [\"b\", \"space\"]\nat = [[0, 0, 0.5], [0, 0, 2.5]]\n[run]\nstep = 0.01\nduration = 1\nnearest = true\n\
-                [picture]\nplane = \"yz\"\n[output]\ncolumns = [\"position\", \"momentum\", \"angular-momentum\"]\nevery = 2\n";
     // A shorter search for an accuracy.
     let short = |text: String| text.replace("accuracy = 1e-9", "accuracy = 1e-6").replace("\"60 s\"", "0.1");
     let files = paths.iter().map(|path| short(fs::read_to_string(path).unwrap()));
-    files.chain([all.to_owned(), split.to_owned(), held.to_owned()]).collect()
+    let own = [include_str!("scenes/all.toml"), include_str!("scenes/split.toml"), include_str!("scenes/chain.toml")];
+    files.chain(own.map(str::to_owned)).collect()
 }
 
 /// Typical slips, and invalid numbers.
