@@ -80,7 +80,7 @@ pub(crate) fn command() -> Command {
                 .arg(Arg::new("NAME").help("An effect or a scene file; all effects are listed if it is left away"))
                 .arg(flag("latex", "The equations as LaTeX"))
                 .arg(flag("rust", "The straight-line code of a step in Rust"))
-                .arg(flag("c", "A step on SO(3) as C99 without dependencies"))
+                .arg(flag("c", "A step as C99 without dependencies"))
                 .group(ArgGroup::new("form").args(["latex", "rust", "c"]).requires("NAME")),
         )
         .subcommand(

@@ -6,13 +6,13 @@ use std::process::Command;
 use std::{env, fs};
 
 use declarations::{CayleyTop, DoublePendulum, Flyer, FullTop, LogTop, SixthOrderTop};
-use liestep::groups::{LieGroup, SE3};
+use liestep::groups::{CayleyRetraction, LieGroup, Retraction, SE3, SE23};
 use liestep::mechanics::{Effect, Regular};
 use liestep::numbers::Entries;
-use liestep::{NonstandardInertia, SO3, Stepper};
+use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep_derivation::whole::StepRefusal;
 use liestep_late::{Declaration, LateError, c, latex, rust};
-use nalgebra::{Matrix3, Matrix4, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, UnitQuaternion, Vector3};
 
 const STEP: f64 = 0.01;
 
@@ -39,6 +39,12 @@ fn top() -> FullTop {
     let J_d = Matrix3::new(2.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 3.0);
     let J_d = NonstandardInertia::new(J_d).expect("an inertia");
     FullTop { J_d, m: 1.5, g: 9.81, rho: Vector3::new(0.1, -0.2, 0.4), up: Vector3::z() }
+}
+
+#[lagrangian(group = SE23, l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h))]
+#[derive(Clone, Copy, Debug)]
+struct ExtendedPose {
+    J: SMatrix<f64, 5, 5>,
 }
 
 fn list(numbers: impl IntoIterator<Item = f64>) -> String {
@@ -146,6 +152,20 @@ fn so_has_one_of_rigid_motions() {
     let attitude = SE3::from_rotation_and_translation(turn, Vector3::new(0.1, 0.2, 0.5));
     let text = c(parsed(Flyer::DECLARATION)).expect("a step in C");
     assert!(has_the_bits_of(&Flyer { J }, attitude, &[0.5, -0.8, 1.2, 0.3, 0.2, -0.4], 1_000, &text));
+}
+
+/// The inverse of five rows is that by LU, in the library's order.
+#[test]
+fn so_has_one_of_five_rows() {
+    if !is_there("cc") {
+        return;
+    }
+    let J = SMatrix::from_fn(|i, j| if i == j { [1.0, 1.1, 1.2, 1.3, 1.4][i] } else { 0.05 });
+    let turn = SVector::from_fn(|i, _| [0.3, -0.5, 0.2][i % 3]);
+    let attitude = <CayleyRetraction as Retraction<SE23>>::retract(&turn);
+    let text = c(parsed(ExtendedPose::DECLARATION)).expect("a step in C");
+    let velocity = [0.25, -0.4, 0.6, 0.15, 0.1, -0.2, 0.05, 0.3, -0.1];
+    assert!(has_the_bits_of(&ExtendedPose { J }, attitude, &velocity, 1_000, &text));
 }
 
 #[test]

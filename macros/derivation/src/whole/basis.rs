@@ -80,6 +80,15 @@ impl Basis {
         self.generators.len()
     }
 
+    /// The numbers that programs have of the basis.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
+        let lengths = self.lengths.iter().map(|length| 1.0 / length);
+        let cubes = self.generators.iter().filter_map(|e| self.cube(e));
+        let squares = self.generators.iter().flat_map(|e| self.times(e, e));
+        let all = self.generators.iter().flatten().copied().chain(self.dual.iter().map(|term| term.2));
+        all.chain(lengths).chain(cubes).chain(squares)
+    }
+
     /// The form of the group.
     pub(super) fn form(&self) -> Form {
         let (n, all) = (self.size, &self.generators);

@@ -10,11 +10,12 @@
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!
-//! The files depend on each other in one direction: `step → limit → writer → {actions, solved} → factor → relations → {basis
+//! The files depend on each other in one direction: `step → {limit, certified} → writer → {actions, solved} → factor → relations → {basis
 //! → linear, matrix → values}`.
 
 mod actions;
 mod basis;
+mod certified;
 mod factor;
 mod limit;
 mod linear;
@@ -47,6 +48,11 @@ pub enum StepRefusal {
     },
     /// There is no kinetic part, so that no velocity has a momentum.
     NoKinetic,
+    /// The programs of the step don't make one, which is a fault of this library.
+    Wrong {
+        /// The claim that is wrong.
+        claim: &'static str,
+    },
     /// The step has more operations than this limit.
     TooLong {
         /// The limit.
@@ -65,6 +71,7 @@ impl fmt::Display for StepRefusal {
                 generator + 1
             ),
             Self::NoKinetic => write!(f, "there is no kinetic part, so no step: add a Lagrangian of the velocity"),
+            Self::Wrong { claim } => write!(f, "{claim} in the step as it is written: please report this declaration"),
             Self::TooLong { most } => {
                 write!(f, "a step has more than {most} operations: declare a smaller group or a shorter Lagrangian")
             }

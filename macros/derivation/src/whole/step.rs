@@ -2,6 +2,7 @@
 
 use super::actions::{at_attitude, change};
 use super::basis::Form;
+use super::certified::{self, Subject};
 use super::factor::MatrixFactor;
 use super::limit::Limit;
 use super::matrix::Matrix;
@@ -179,6 +180,10 @@ impl WholeStep {
         let programs = writer.programs();
         if programs.operations() > MOST_OPERATIONS {
             return Err(too_long);
+        }
+        let Programs { iterate, finish, seen, spatial, defect, .. } = &programs;
+        if let Some(claim) = certified::mistake(&writer, &Subject { iterate, finish, seen, spatial, defect }) {
+            return Err(StepRefusal::Wrong { claim });
         }
         let count = |is_one: fn(&MatrixFactor) -> bool| writer.factors.iter().filter(|factor| is_one(factor)).count();
         let (n, numbers) = (writer.dimension(), programs.iterate.outputs.len());

@@ -39,7 +39,8 @@
 //!
 //! The tree has the meaning of the tokens, which a test checks on random declarations by evaluating their text
 //! separately. The action of a group on advected parameters, which is written here a second time, the library's own
-//! Cayley map, transport and solves, and the writing of tokens are right.
+//! Cayley map, transport and solves, and the writing of tokens are right. Where a step is written as programs, `whole`
+//! certifies all of these but the tokens.
 //!
 //! A group whose generators' multiples have no Cayley transforms in it has points that are power series instead,
 //! `exp(t v̂_1) ⋯ exp(t v̂_n)`. There all is compared to the order to which series are known, without rounding, and without a

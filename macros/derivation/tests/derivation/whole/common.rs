@@ -122,7 +122,7 @@ pub(super) fn inputs(array: Array, count: usize) -> Program {
     program(|_| Symbol::inputs(array, count))
 }
 
-/// A declaration on these factors, whose residual and Jacobian are constants, and whose inertia is the identity.
+/// A declaration on these factors, whose residual is `c + J y` of half the coordinates `y`, and whose inertia is the identity.
 pub(super) fn declared(factors: &[Generators], carried: Vec<Carried>) -> StagedDeclaration {
     let n: usize = factors.iter().map(Vec::len).sum();
     let length = |one: &Carried| one.shape.0 * one.shape.1;
@@ -130,6 +130,12 @@ pub(super) fn declared(factors: &[Generators], carried: Vec<Carried>) -> StagedD
         let inertia = (0..n * n).map(|at| Symbol::one_if(at / n == at % n));
         inertia.chain(vec![Symbol::ZERO; n + 1]).collect()
     });
+    let residual = |words: &mut Words| {
+        let (constants, half) = (Symbol::inputs(Array::Constants, n + n * n), Symbol::inputs(Array::Half, n));
+        let image: Vec<Symbol> = constants[n..].chunks(n).map(|row| words.dot(row, &half)).collect();
+        words.added(&constants[..n], &image)
+    };
+    let jacobian = Symbol::inputs(Array::Constants, n + n * n).split_off(n);
     StagedDeclaration {
         name: "Body".to_owned(),
         role: Role::Lagrangian,
@@ -152,8 +158,8 @@ pub(super) fn declared(factors: &[Generators], carried: Vec<Carried>) -> StagedD
         programs: Stages {
             constants: inputs(Array::Parameters, n + n * n),
             kick_before: program(|_| vec![Symbol::ZERO; n]),
-            newton_system: inputs(Array::Constants, n + n * n),
-            newton_residual: inputs(Array::Constants, n),
+            newton_system: program(|words| [residual(words), jacobian].concat()),
+            newton_residual: program(residual),
             kick_after: program(|_| vec![Symbol::ZERO; n]),
             kick_derivative: None,
             momentum_jacobian: program(|_| Vec::new()),

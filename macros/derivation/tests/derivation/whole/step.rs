@@ -185,6 +185,17 @@ fn refusals_say_what_to_write() {
     }
 }
 
+/// A step is certified as it is written: an entry of the Jacobian in another place is noticed, as is a residual.
+#[test]
+fn what_is_wrong_is_refused() {
+    for places in [[3, 4], [0, 1], [5, 9]] {
+        let mut wrong = heavy_top();
+        wrong.programs.newton_system.outputs.swap(places[0], places[1]);
+        let refusal = WholeStep::of(&wrong).expect_err("no step");
+        assert_eq!(refusal, StepRefusal::Wrong { claim: "an iteration isn't Newton's" });
+    }
+}
+
 /// What a step costs: one more operation is a word to be looked for.
 #[test]
 fn operations_of_a_step() {
