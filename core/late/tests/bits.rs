@@ -128,7 +128,6 @@ fn a_spring() {
     as_compiled! { Spring { J_d k length rho anchor } }
 }
 
-/// The steps of these are solved without the Jacobian.
 #[test]
 fn of_higher_orders() {
     as_compiled! {
