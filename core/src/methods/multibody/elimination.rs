@@ -28,6 +28,8 @@ use alloc::vec::Vec;
 
 use nalgebra::{Matrix6, SMatrix, Vector2, Vector6};
 
+roots!();
+
 use super::graph::{Member, Tree};
 use crate::numbers::{Coordinates as _, Pattern};
 

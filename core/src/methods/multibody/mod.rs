@@ -23,6 +23,7 @@ mod equations;
 mod functions;
 mod graph;
 mod newton;
+mod propagator;
 mod start;
 mod state;
 mod step;

@@ -1,6 +1,5 @@
 //! The stepper of a system of bodies.
 
-use alloc::boxed::Box;
 use alloc::string::String;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -12,18 +11,17 @@ roots!();
 use super::constraint::Place;
 use super::equations::gap;
 use super::graph::{Joined, Tree};
-use super::state::{Offsets, body_at, body_of, layout};
+use super::state::{Offsets, body_at, layout};
 use super::system::{Multibody, ends};
 use super::terms::{BodyTerm, space};
 use super::workspace::with_workspace;
 use super::{Body, place};
 use crate::error::{SetupError, StepError};
-use crate::groups::LieGroup as _;
 use crate::mechanics::{SceneVisitor, check_inertia};
-use crate::motion::{Layout, Propagator, StepReport};
+use crate::motion::Layout;
 use crate::numbers::{BlockDiagonal, Coordinates as _, Pattern};
 
-/// The stepper of a [`Multibody`] system: a [`Propagator`] whose states are slices of numbers.
+/// The stepper of a [`Multibody`] system: a [`Propagator`](crate::motion::Propagator) whose states are slices of numbers.
 ///
 /// # Contract
 ///
@@ -52,7 +50,7 @@ pub struct MultibodyStepper {
     pub(super) tree: Tree,
     /// The radius of gyration of each body, m, by which rotations are compared with translations.
     pub(super) lengths: Vec<f64>,
-    layout: Layout,
+    pub(super) layout: Layout,
     pub(super) offsets: Offsets,
 }
 
@@ -61,6 +59,29 @@ impl core::fmt::Debug for MultibodyStepper {
         let (bodies, joints) = (self.bodies(), self.joints().len());
         let mut debug = f.debug_struct("MultibodyStepper");
         debug.field("h", &self.h).field("bodies", &bodies).field("joints", &joints).finish_non_exhaustive()
+    }
+}
+
+impl Multibody {
+    /// The stepper of the system by steps of `h`, s.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Stepper::new`](crate::Stepper::new), and [`SetupError::BodyParameter`] for one of several
+    /// bodies; [`SetupError::Joint`] and [`SetupError::JointParameter`] name an invalid joint, [`SetupError::Place`] a
+    /// term at a body that there isn't.
+    pub fn stepper(self, h: f64) -> Result<MultibodyStepper, SetupError> {
+        self.check_places()?;
+        for (body, term) in &self.terms {
+            term.validate().map_err(|error| match error {
+                SetupError::Parameter { field, cause } if self.bodies > 1 => {
+                    SetupError::BodyParameter { body: *body, field, cause }
+                }
+                error => error,
+            })?;
+        }
+        self.pairs.iter().try_for_each(|(_, term)| term.validate())?;
+        MultibodyStepper::of(self, h)
     }
 }
 
@@ -230,7 +251,7 @@ impl MultibodyStepper {
     ///
     /// # Panics
     ///
-    /// If there is no such body, or if the slice is no state of this [`layout`](Propagator::layout).
+    /// If there is no such body, or if the slice is no state of this [`layout`](crate::motion::Propagator::layout).
     #[must_use]
     pub fn attitude(&self, state: &[f64], body: usize) -> Body {
         body_at(state, body)
@@ -240,7 +261,7 @@ impl MultibodyStepper {
     ///
     /// # Panics
     ///
-    /// If there is no such body, or if the slice is no state of this [`layout`](Propagator::layout).
+    /// If there is no such body, or if the slice is no state of this [`layout`](crate::motion::Propagator::layout).
     #[must_use]
     pub fn momentum(&self, state: &[f64], body: usize) -> Vector6<f64> {
         self.offsets.momentum(state, body)
@@ -250,7 +271,7 @@ impl MultibodyStepper {
     ///
     /// # Panics
     ///
-    /// If there is no such body, or if the slice is no state of this [`layout`](Propagator::layout).
+    /// If there is no such body, or if the slice is no state of this [`layout`](crate::motion::Propagator::layout).
     #[must_use]
     pub fn velocity(&self, state: &[f64], body: usize) -> Vector6<f64> {
         self.velocity_of(body, &self.attitude(state, body), &self.momentum(state, body))
@@ -343,7 +364,7 @@ impl MultibodyStepper {
     ///
     /// # Errors
     ///
-    /// The errors of [`step`](Propagator::step).
+    /// The errors of [`step`](Self::step).
     ///
     /// # Examples
     ///
@@ -402,40 +423,6 @@ impl MultibodyStepper {
         Self::of(self.system.refolded(1.0), h)
     }
 
-    /// Makes `steps` steps; on an error the state is unchanged. Returns the sum of their iterations.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`step`](Propagator::step).
-    pub fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
-        self.check(state)?;
-        with_workspace(|work| {
-            let mut before = core::mem::take(&mut work.before);
-            before.clear();
-            before.extend_from_slice(state);
-            let mut iterations = 0;
-            let made = (0..steps).try_for_each(|_| {
-                iterations += u64::from(self.step_in(state, work, None)?.iterations);
-                Ok(())
-            });
-            if made.is_err() {
-                state.copy_from_slice(&before);
-            }
-            work.before = before;
-            made.map(|()| iterations)
-        })
-    }
-
-    /// Makes one step; on an error the state is unchanged.
-    ///
-    /// # Errors
-    ///
-    /// [`StepError`] that names a body or a joint, see the type's contract.
-    pub fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        self.check(state)?;
-        with_workspace(|work| self.step_in(state, work, None))
-    }
-
     /// Sets the memory of a state to that of a new start.
     pub(super) fn begin(&self, state: &mut [f64]) {
         let bodies = self.attitudes(state);
@@ -455,85 +442,4 @@ pub(super) fn check_length(what: &'static str, found: usize, expected: usize) ->
 fn length(inertia: &Matrix6<f64>) -> f64 {
     let trace = |first: usize| (first..first + 3).map(|k| inertia[(k, k)]).sum::<f64>();
     (trace(0) / trace(3)).sqrt()
-}
-
-impl Propagator for MultibodyStepper {
-    fn layout(&self) -> &Layout {
-        &self.layout
-    }
-
-    fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
-        check_length("attitude", attitude.len(), self.layout.entries())?;
-        check_length("velocity", velocity.len(), self.layout.components())?;
-        let bodies: Vec<_> = attitude.chunks(self.offsets.attitudes() / self.bodies()).map(body_of).collect();
-        let velocities: Vec<_> = velocity.chunks(6).map(Vector6::from_column_slice).collect();
-        Self::start(self, &bodies, &velocities)
-    }
-
-    fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        Self::step(self, state)
-    }
-
-    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
-        Self::run(self, state, steps)
-    }
-
-    fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
-        self.check(state)?;
-        let mut next = state.to_vec();
-        // So small a change would be lost in rounding.
-        if fraction.abs() >= f64::EPSILON * f64::EPSILON {
-            let part =
-                self.with_step(self.h * fraction).map_err(|_| StepError::NonFinite { what: "part of the step" })?;
-            part.begin(&mut next);
-            part.step(&mut next)?;
-            self.offsets.set_steps(&mut next, self.offsets.steps(state));
-        }
-        self.begin(&mut next);
-        Ok(next.into())
-    }
-
-    fn adopt(&self, state: &[f64]) -> Box<[f64]> {
-        let known = self.offsets.attitudes() + 6 * self.bodies();
-        let mut adopted = self.offsets.zeros();
-        if state.len() < known {
-            adopted.fill(f64::NAN);
-            return adopted.into();
-        }
-        adopted[..known].copy_from_slice(&state[..known]);
-        self.begin(&mut adopted);
-        adopted.into()
-    }
-
-    fn step_size(&self) -> f64 {
-        self.h
-    }
-
-    fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
-        let is_state = self.check(state).is_ok();
-        for (body, components) in velocity.chunks_exact_mut(6).enumerate() {
-            let of_body = (is_state && body < self.bodies()).then(|| Self::velocity(self, state, body));
-            components.copy_from_slice(of_body.unwrap_or_else(|| Vector6::repeat(f64::NAN)).as_slice());
-        }
-    }
-
-    fn energy(&self, state: &[f64]) -> f64 {
-        Self::energy(self, state)
-    }
-
-    fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        let is_state = self.check(state).is_ok();
-        for (body, components) in momentum.chunks_exact_mut(6).enumerate() {
-            let of_body = (is_state && body < self.bodies())
-                .then(|| self.attitude(state, body).inverse().adjoint_transpose(&self.momentum(state, body)));
-            components.copy_from_slice(of_body.unwrap_or_else(|| Vector6::repeat(f64::NAN)).as_slice());
-        }
-    }
-
-    fn defect(&self, state: &[f64]) -> f64 {
-        if self.check(state).is_err() {
-            return f64::NAN;
-        }
-        (0..self.bodies()).map(|body| self.attitude(state, body).defect()).sum()
-    }
 }

@@ -8,7 +8,6 @@ use super::Body;
 use super::constraint::Constraint;
 use super::functions::Erased;
 use super::graph::Joined;
-use super::stepper::MultibodyStepper;
 use super::terms::{BodyTerm, PairTerm, of_body, of_pair};
 use crate::error::SetupError;
 use crate::groups::{CayleyRetraction, R3, SO3};
@@ -149,29 +148,8 @@ impl Multibody {
         self.bodies
     }
 
-    /// The stepper of the system by steps of `h`, s.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`Stepper::new`](crate::Stepper::new), and [`SetupError::BodyParameter`] for one of several
-    /// bodies; [`SetupError::Joint`] and [`SetupError::JointParameter`] name an invalid joint, [`SetupError::Place`] a
-    /// term at a body that there isn't.
-    pub fn stepper(self, h: f64) -> Result<MultibodyStepper, SetupError> {
-        self.check_places()?;
-        for (body, term) in &self.terms {
-            term.validate().map_err(|error| match error {
-                SetupError::Parameter { field, cause } if self.bodies > 1 => {
-                    SetupError::BodyParameter { body: *body, field, cause }
-                }
-                error => error,
-            })?;
-        }
-        self.pairs.iter().try_for_each(|(_, term)| term.validate())?;
-        MultibodyStepper::of(self, h)
-    }
-
     /// Checks that terms are at bodies of the system.
-    fn check_places(&self) -> Result<(), SetupError> {
+    pub(super) fn check_places(&self) -> Result<(), SetupError> {
         if self.bodies == 0 {
             return Err(SetupError::Place { cause: "a system has a body at least" });
         }

@@ -89,7 +89,9 @@ fn a_system_is_a_propagator() {
     let start = state.clone();
     propagator.run(&mut state, 200).unwrap();
     let mut other = start.clone();
-    (0..200).for_each(|_| _ = propagator.step(&mut other).unwrap());
+    for _ in 0..200 {
+        propagator.step(&mut other).unwrap();
+    }
     assert_eq!(state, other);
     assert!((propagator.time(&state) - 2.0).abs() < 1e-12);
     // Two halves of a step backwards end near the state before it, to the order of the method.

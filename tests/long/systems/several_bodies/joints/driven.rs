@@ -103,7 +103,9 @@ fn bodies_that_joints_and_springs_hold() {
     let cord = |stiffness| Cord { stiffness, at_1: Vector3::new(0.1, 0.2, 0.0), at_2: Vector3::new(-0.1, 0.2, 0.1) };
     let of = |stiffness: f64, h: f64| {
         let mut system = system(bodies, &joints);
-        (1..N).for_each(|k| system.between([Some(k - 1), Some(k)], cord(stiffness)));
+        for k in 1..N {
+            system.between([Some(k - 1), Some(k)], cord(stiffness));
+        }
         Held { bodies, stepper: system.stepper(h).unwrap() }
     };
     let (stepper, free) = (of(30.0, 0.005), of(0.0, 0.005));
