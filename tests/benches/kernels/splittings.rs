@@ -1,7 +1,6 @@
 //! The time for ten seconds of a symmetric top by splittings in lanes on one core, beside a Taylor integrator's
 //! batches.
 
-use std::error::Error;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -14,7 +13,8 @@ use liestep::{SO3, Stepper};
 use nalgebra::{UnitQuaternion, Vector3};
 use simba::simd::AutoF64x8;
 
-type Failure = Box<dyn Error>;
+use crate::kernel::Failure;
+
 type Scene = Sum<PrincipalBody, Gravity>;
 /// A stepper and its initial state.
 type Top<I> = (I, <I as Integrator>::State);
@@ -172,7 +172,7 @@ fn compare<S: Scheme>(schemes: &[S], exact: &[End], best: &mut [(f64, &'static s
 /// The times by `with_heyoka.py`, if Python has heyoka.
 fn theirs(exact: &[End]) -> Result<Option<[f64; 2]>, Failure> {
     let mut python = Command::new("python3");
-    python.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/with_heyoka.py"));
+    python.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/with_heyoka.py"));
     // Without Python there is no heyoka either.
     let Ok(mut child) = python.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn() else { return Ok(None) };
     let mut lines = String::new();
