@@ -9,7 +9,7 @@ use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Sum};
 use liestep::methods::{ProcessedScheme, ProcessedSplitting, Splitting, SplittingScheme, SymmetricBody};
 use liestep::motion::{Batch, Batchable, Integrator, Plan};
-use liestep::{SO3, StateOf, Stepper};
+use liestep::{StateOf, Stepper};
 use liestep_refinement::{Measurement, Refinement};
 use nalgebra::{UnitQuaternion, Vector3};
 use simba::simd::AutoF64x8;
@@ -76,15 +76,14 @@ impl Body {
 /// The vertical and the velocity in the body frame.
 type End = [Vector3<f64>; 2];
 
-/// Prepares a top for a step.
-trait Prepare<I: Integrator>: Fn(&Body, f64) -> Result<(I, I::State), Failure> {}
-
-impl<I: Integrator, F: Fn(&Body, f64) -> Result<(I, I::State), Failure>> Prepare<I> for F {}
-
 /// The ends of all tops, run in lanes, and the time for a top, s.
-fn ends<I>(top: &impl Prepare<I>, steps: u32, repeated: usize) -> Result<(Vec<End>, f64), Failure>
+fn ends<P: Plan<Scene>>(
+    top: &impl Fn(&Body, f64) -> Result<Top<P>, Failure>,
+    steps: u32,
+    repeated: usize,
+) -> Result<(Vec<End>, f64), Failure>
 where
-    I: Batchable<AutoF64x8> + Integrator<Group = SO3, Advected = ((), Vector3<f64>)>,
+    Stepper<Scene, P>: Batchable<AutoF64x8> + Integrator<State = StateOf<Scene, P>>,
 {
     let tops = (0..TOPS).map(|number| top(&body(number), TIME / f64::from(steps))).collect::<Result<Vec<_>, _>>()?;
     let (mut ends, mut time) = (Vec::new(), 0.0);
@@ -127,13 +126,13 @@ fn error(ends: &[End], exact: &[End]) -> f64 {
 }
 
 /// Replaces the best costs, µs a top, by those of this scheme if they are lower.
-fn compare<I>(
-    (name, top): (&'static str, impl Prepare<I>),
+fn compare<P: Plan<Scene>>(
+    (name, top): (&'static str, impl Fn(&Body, f64) -> Result<Top<P>, Failure>),
     exact: &[End],
     best: &mut [(f64, &'static str); 2],
 ) -> Result<(), Failure>
 where
-    I: Batchable<AutoF64x8> + Integrator<Group = SO3, Advected = ((), Vector3<f64>)>,
+    Stepper<Scene, P>: Batchable<AutoF64x8> + Integrator<State = StateOf<Scene, P>>,
 {
     let run = |steps| -> Result<_, Failure> {
         let (ends, time) = ends(&top, steps, REPEATED)?;
