@@ -13,24 +13,23 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use liestep::effects::{Gravity, RigidBody};
-use liestep::motion::AnyStepper;
+use liestep::motion::{Integrator, Motion};
 use liestep::nalgebra::{UnitQuaternion, Vector3};
 use liestep::recording::Frames;
 use liestep::{NonstandardInertia, SO3, Stepper};
 
-/// A toy in single precision, as in games; its type doesn't depend on the forces.
-type Toy = Frames<AnyStepper<SO3<f32>, ()>>;
-
 /// The length of a step, s.
 const STEP: f32 = 1.0 / 60.0;
 
+/// The motion of a toy in single precision, as in games.
+type Motion32 = Motion<SO3<f32>, ((), Vector3<f32>)>;
+
 /// A toy of 50 g, with its centre of mass 3 cm above the tip, tilted by 0.2 rad.
-fn toy() -> Result<Toy, Box<dyn Error>> {
+fn toy() -> Result<Frames<impl Integrator<Scalar = f32, Motion = Motion32, State: PartialEq> + Clone>, Box<dyn Error>> {
     // The nonstandard inertia J_d about the tip, kg m².
     let inertia = NonstandardInertia::from_diagonal(Vector3::new(1e-5, 1e-5, 5.5e-5))?;
     let gravity = Gravity { m: 0.05, g: 9.81, rho: Vector3::new(0.0, 0.0, 0.03), up: Vector3::z() };
-    let stepper =
-        Stepper::new(RigidBody { J_d: inertia } + gravity, STEP)?.or_substeps(64).into_any().hiding_advected();
+    let stepper = Stepper::new(RigidBody { J_d: inertia } + gravity, STEP)?.or_substeps(64);
     let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.2, 0.0, 0.0));
     let state = stepper.start(tilted, Vector3::new(0.0, 0.0, 300.0))?;
     Ok(Frames::new(stepper, state))

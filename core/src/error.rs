@@ -37,6 +37,26 @@ pub enum SetupError {
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
+    /// A method that the scene, or its group, doesn't have.
+    #[error("the method {cause}")]
+    Method {
+        /// The reason, as a predicate, and what to take.
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        cause: Text,
+    },
+    /// A list of numbers has another length than the group's.
+    #[error(
+        "the {what} has {found} numbers and not {expected}; give the entries of matrices row by row, and all components"
+    )]
+    Length {
+        /// The list.
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        what: Text,
+        /// Its length.
+        found: usize,
+        /// The length of the group's.
+        expected: usize,
+    },
     /// A parameter of one of several bodies has a value that can't be used.
     #[error("parameter `{field}` of the body {body} (from zero) {cause}; give it another value")]
     BodyParameter {
@@ -49,10 +69,17 @@ pub enum SetupError {
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
+    /// A term of a system is at no body.
+    #[error("{cause}; add bodies first, and put terms at their numbers, from zero")]
+    Place {
+        /// The fault, as a sentence.
+        #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
+        cause: Text,
+    },
     /// A joint doesn't fit the bodies that it joins.
     #[error("the joint {joint} (from zero) {cause}; check the bodies that it joins")]
     Joint {
-        /// The joint, from zero: those of trees first, then those that close loops.
+        /// The joint, from zero.
         joint: usize,
         /// The fault, as a predicate.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
@@ -336,7 +363,7 @@ pub enum StepError {
         "the joint {joint} (from zero) comes to a singular position (pivot {pivot:e}), where its force isn't determined; take a joint with fewer functions, smaller steps, or another way"
     )]
     SingularJoint {
-        /// The joint, from zero: those of trees first, then those that close loops.
+        /// The joint, from zero.
         joint: usize,
         /// Pivot of the joint, relative to its value between free bodies.
         pivot: f64,

@@ -14,11 +14,12 @@ pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTenso
 pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
 pub use crate::mechanics::{
     ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Limit, Operations, Parts,
-    Residual, SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, StepPoint, Sum, Term, WithExpensiveKinetic,
-    WithKinetic, WithPace, WithoutKinetic,
+    SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, StepPoint, Sum, Term, WithKinetic, WithoutKinetic,
 };
 pub use crate::methods::{Constraint, Place, Slope};
 pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Numbers, Real, real};
+
+pub use crate::solving::{largest_fraction, six_digits};
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 

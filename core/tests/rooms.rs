@@ -22,7 +22,7 @@ const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("methods", &["error", "numbers", "groups", "mechanics", "effects", "solving", "motion", "gradients"]),
     ("recording", &["error", "numbers", "groups", "mechanics", "motion", "methods"]),
     ("with", &["error", "numbers", "groups", "mechanics", "motion", "methods"]),
-    ("accuracy", &["error", "numbers", "groups", "mechanics", "motion", "methods"]),
+    ("accuracy", &["error", "numbers", "groups", "mechanics", "motion", "methods", "with"]),
     ("laws", &["numbers", "groups"]),
     ("conventions", &[]),
     ("guide", &[]),

@@ -160,8 +160,7 @@ pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) 
 }
 
 /// Derives the slopes of a holonomic constraint on two bodies: `impl Constraint` for the annotated struct, which
-/// `Stepper::jointed` takes like the library's joints. All its constraints have one type: joints of several kinds are
-/// an enum of your own, see `Constraint`.
+/// `Multibody::join` takes like the library's joints.
 ///
 /// ```text
 /// #[constraint(

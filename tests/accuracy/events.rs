@@ -223,7 +223,7 @@ fn between_steps_the_order_is_that_of_the_method() {
         S: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + 'static,
         P: Plan<S, Kept: 'static> + 'static,
     {
-        let stepper = stepper.into_any();
+        let stepper = stepper.into_any().on_group::<SO3, Vector3<f64>>().unwrap();
         let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
         stepper.run(&mut state, u64::from(steps) - 1).unwrap();
         let end = stepper.part(&state, PART).unwrap();

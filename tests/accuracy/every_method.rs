@@ -4,32 +4,33 @@ use checks::order::{TOPS, assert_order, counts};
 use checks::random::Random;
 use declarations::{HeavyTop, Motion};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
-use liestep::motion::{AnyStepper, Integrator as _};
+use liestep::motion::{GroupState, GroupStepper, Integrator as _};
 use liestep::prelude::*;
+use liestep::with::{Method, Scheme};
 use nalgebra::Vector3;
 use workbench::measure::relative;
 
 /// Steppers of a top by each method, with their names.
-pub(crate) fn all(top: &HeavyTop, h: f64) -> Vec<(String, AnyStepper<SO3, Vector3<f64>>)> {
+pub(crate) fn all(top: &HeavyTop, h: f64) -> Vec<(String, GroupStepper<SO3, Vector3<f64>>)> {
     let (top, flow) = (|| top.clone(), ExactBody::new(&top.ordinary_inertia()));
-    let own = ("its own step".to_owned(), Stepper::new(top(), h).unwrap().into_any());
-    let compensated = ("compensated".to_owned(), Stepper::new(top(), h).unwrap().compensated().into_any());
-    let composed = CompositionScheme::ALL
-        .into_iter()
-        .filter(|scheme| scheme.base() == 2)
-        .map(|scheme| (scheme.name().to_owned(), Stepper::composed(top(), h, scheme).unwrap().into_any()));
+    let own = ("step".to_owned(), Stepper::new(top(), h).unwrap().into_any());
+    let compensated = ("step, compensated".to_owned(), Stepper::new(top(), h).unwrap().compensated().into_any());
+    let composed = CompositionScheme::ALL.into_iter().filter(|scheme| scheme.base() == 2).map(|scheme| {
+        (Scheme::Composition(scheme).to_string(), Stepper::composed(top(), h, scheme).unwrap().into_any())
+    });
     let split = SplittingScheme::ALL.into_iter().map(|scheme| {
-        (format!("exact, {}", scheme.name()), Stepper::split(top(), h, flow, scheme).unwrap().into_any())
+        (Scheme::Splitting(scheme).to_string(), Stepper::split(top(), h, flow, scheme).unwrap().into_any())
     });
     let processed = ProcessedScheme::ALL.into_iter().map(|scheme| {
-        (format!("exact, {}", scheme.name()), Stepper::processed(top(), h, flow, scheme).unwrap().into_any())
+        (Scheme::Processed(scheme).to_string(), Stepper::processed(top(), h, flow, scheme).unwrap().into_any())
     });
     let collocated = [
         ("2 stages".to_owned(), Stepper::collocated::<1>(top(), h).unwrap().into_any()),
-        ("4 stages".to_owned(), Stepper::collocated::<2>(top(), h).unwrap().into_any()),
-        ("8 stages".to_owned(), Stepper::collocated::<4>(top(), h).unwrap().into_any()),
+        ("collocation 4".to_owned(), Stepper::collocated::<2>(top(), h).unwrap().into_any()),
+        ("collocation 8".to_owned(), Stepper::collocated::<4>(top(), h).unwrap().into_any()),
     ];
-    [own, compensated].into_iter().chain(composed).chain(split).chain(processed).chain(collocated).collect()
+    let all = [own, compensated].into_iter().chain(composed).chain(split).chain(processed).chain(collocated);
+    all.map(|(name, stepper)| (name, stepper.on_group().unwrap())).collect()
 }
 
 #[test]
@@ -62,20 +63,20 @@ fn s5_a_step_of_the_negative_length_is_the_inverse_map() {
 #[test]
 fn methods_have_their_orders() {
     let table: [(&str, u32, f64, &[u32]); 14] = [
-        ("Suzuki 4", 4, 2.0, &[1000, 1000, 1000, 160]),
-        ("Kahan-Li 6", 6, 1.5, &[800, 800, 800, 160]),
-        ("Kahan-Li 8", 8, 1.3, &[600, 600, 600, 140]),
-        ("exact, Strang", 2, 2.0, &[200; 3]),
-        ("exact, near-integrable (4, 2)", 2, 2.0, &[200; 3]),
-        ("exact, Nyström 6-4", 4, 1.4, &[500; 3]),
-        ("exact, Nyström 11-6", 6, 1.4, &[100, 100, 100, 60]),
-        ("exact, Nyström 14-6", 6, 1.4, &[80; 3]),
-        ("exact, Kahan-Li 8", 8, 1.2, &[160, 80, 110, 80]),
-        ("exact, force gradient 2-4", 4, 1.5, &[200, 200, 200, 100]),
-        ("exact, force gradient 4-4", 4, 1.5, &[200; 3]),
-        ("exact, force gradient 5-6", 6, 1.3, &[100, 100, 100, 60]),
+        ("composition Suzuki 4", 4, 2.0, &[1000, 1000, 1000, 160]),
+        ("composition Kahan-Li 6", 6, 1.5, &[800, 800, 800, 160]),
+        ("composition Kahan-Li 8", 8, 1.3, &[600, 600, 600, 140]),
+        ("splitting Strang", 2, 2.0, &[200; 3]),
+        ("splitting near-integrable (4, 2)", 2, 2.0, &[200; 3]),
+        ("splitting Nyström 6-4", 4, 1.4, &[500; 3]),
+        ("splitting Nyström 11-6", 6, 1.4, &[100, 100, 100, 60]),
+        ("splitting Nyström 14-6", 6, 1.4, &[80; 3]),
+        ("splitting Kahan-Li 8", 8, 1.2, &[160, 80, 110, 80]),
+        ("splitting force gradient 2-4", 4, 1.5, &[200, 200, 200, 100]),
+        ("splitting force gradient 4-4", 4, 1.5, &[200; 3]),
+        ("splitting force gradient 5-6", 6, 1.3, &[100, 100, 100, 60]),
         ("2 stages", 4, 1.5, &[1500, 800, 1500, 160]),
-        ("4 stages", 8, 1.25, &[240, 120, 260, 70]),
+        ("collocation 4", 8, 1.25, &[240, 120, 260, 70]),
     ];
     for (name, order, ratio, coarsest) in table {
         for (motion, coarsest) in TOPS.iter().zip(coarsest) {
@@ -96,7 +97,7 @@ fn methods_keep_the_momenta() {
     let motion = Motion::looping();
     for (name, stepper) in all(&motion.top, 0.04) {
         let mut state = stepper.start(motion.attitude, motion.velocity).unwrap();
-        let kept = |state: &liestep::motion::AnyState<SO3, Vector3<f64>>| {
+        let kept = |state: &GroupState<SO3, Vector3<f64>>| {
             [state.momentum_along(&Vector3::z()), state.momentum().z, state.advected().norm()]
         };
         let before = kept(&state);
@@ -105,4 +106,24 @@ fn methods_keep_the_momenta() {
         println!("{name}: {off:.1e}, orthogonality {:.1e}", state.orthogonality_defect());
         assert!(off < 2e-12 && state.orthogonality_defect() < 2e-12, "{name}: {off:e}");
     }
+}
+
+/// A method by its text makes the steps of the typed stepper, to the bit.
+#[test]
+fn methods_by_their_texts_are_the_typed_ones() {
+    let motion = Motion::read("looping A");
+    let top = HeavyTop::asymmetric();
+    for (name, typed) in all(&top, 0.04).into_iter().filter(|(name, _)| name != "2 stages") {
+        let method: Method = name.parse().unwrap();
+        assert_eq!(method.to_string(), name);
+        let chosen = method.stepper(top.clone(), 0.04).unwrap();
+        let ends = [typed.any().clone(), chosen].map(|stepper| {
+            let mut state = stepper.start_at(SO3::from(motion.attitude), motion.velocity).unwrap();
+            stepper.run(&mut state, 20).unwrap();
+            state.numbers().iter().map(|number| number.to_bits()).collect::<Vec<_>>()
+        });
+        assert_eq!(ends[0], ends[1], "{name}");
+    }
+    let refused: SetupError = "exact".parse::<Method>().unwrap().stepper(top, 0.04).unwrap_err();
+    assert_eq!(refused.to_string(), "the method is for a body without a potential");
 }

@@ -1,16 +1,11 @@
-//! Lagrangians whose momentum equation is solved by another algorithm, with or without the Jacobian, or wrongly.
+//! Lagrangians whose Jacobians are counted, or whose momentum equation is solved wrongly.
 
 use core::cell::Cell;
-use core::fmt::Debug;
 
-use liestep::groups::Retraction as _;
 use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Group, Limit, Matrix, Parts, Residual, Scalar, SceneVisitor, SecondDerivatives, Square,
-    StepDerivatives, StepPoint, Term, Vector, WithExpensiveKinetic, WithKinetic,
+    DiscreteLagrangian, Effect, Group, Limit, Matrix, Parts, Scalar, SceneVisitor, SecondDerivatives, Square,
+    StepDerivatives, StepPoint, Term, Vector, WithKinetic,
 };
-use liestep::numbers::Real;
-use liestep::prelude::*;
-use nalgebra::{Matrix3, Vector3};
 
 /// Functions that call the wrapped Lagrangian.
 macro_rules! of_inner {
@@ -100,19 +95,19 @@ macro_rules! solved_as {
     };
 }
 
-/// A Lagrangian solved by Newton's iteration, whatever the Jacobian costs.
+/// A Lagrangian whose Jacobians are counted.
 #[derive(Clone, Debug)]
-pub struct WithJacobian<L>(pub L);
+pub struct Counted<L>(pub L);
 
-impl<L: DiscreteLagrangian> DiscreteLagrangian for WithJacobian<L> {
+impl<L: DiscreteLagrangian> DiscreteLagrangian for Counted<L> {
     declared_as!(L);
 }
 
-impl<L: Term> Term for WithJacobian<L> {
+impl<L: Term> Term for Counted<L> {
     term_as!(L);
 }
 
-impl<L: Effect> Effect for WithJacobian<L> {
+impl<L: Effect> Effect for Counted<L> {
     solved_as!(L);
 
     fn newton_system(
@@ -124,12 +119,8 @@ impl<L: Effect> Effect for WithJacobian<L> {
         L::newton_system(constants, terms, half)
     }
 
-    fn newton_residual(
-        constants: &Self::Constants,
-        terms: &Self::StepTerms,
-        half: &Vector<Self>,
-    ) -> Residual<Vector<Self>> {
-        Residual { moving_kick: None, ..L::newton_residual(constants, terms, half) }
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
+        L::newton_residual(constants, terms, half)
     }
 }
 
@@ -137,100 +128,11 @@ std::thread_local! {
     static SYSTEMS: Cell<u32> = const { Cell::new(0) };
 }
 
-/// The number of Jacobians of a [`WithJacobian`] or a [`WithoutJacobian`] that `run` evaluates.
+/// The number of Jacobians of a [`Counted`] that `run` evaluates.
 pub fn jacobians<T>(run: impl FnOnce() -> T) -> (T, u32) {
     let before = SYSTEMS.get();
     let outcome = run();
     (outcome, SYSTEMS.get() - before)
-}
-
-/// Whether `run` evaluates a Jacobian of a [`WithoutJacobian`].
-pub fn needs_jacobian<T>(run: impl FnOnce() -> T) -> (T, bool) {
-    let (outcome, jacobians) = jacobians(run);
-    (outcome, jacobians > 0)
-}
-
-/// A Lagrangian solved as if its Jacobian were expensive. The second field is the inertia that its limit claims.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WithoutJacobian<L, T: Real>(pub L, pub Matrix3<T>);
-
-impl<T: Real, L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Copy> WithoutJacobian<L, T> {
-    pub fn new(lagrangian: L) -> Self {
-        Self(lagrangian, lagrangian.inertia(&lagrangian.advected()))
-    }
-}
-
-impl<T, L> DiscreteLagrangian for WithoutJacobian<L, T>
-where
-    T: Real,
-    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Copy + Debug + PartialEq,
-{
-    declared_as!(L);
-}
-
-impl<T, L> Term for WithoutJacobian<L, T>
-where
-    T: Real,
-    L: Term<Scalar = T, Group = SO3<T>>,
-{
-    term_as!(L);
-}
-
-impl<T, L> Effect for WithoutJacobian<L, T>
-where
-    T: Real,
-    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>> + Copy + Debug + PartialEq,
-{
-    type Constants = (L::Constants, L, T);
-    type StepTerms = (Vector3<T>, L::Advected);
-    type Kinetic = WithExpensiveKinetic;
-
-    staged_as!(L);
-
-    fn inertia(&self, _: &Self::Advected) -> Matrix3<T> {
-        self.1
-    }
-
-    fn constants(&self, h: T) -> Self::Constants {
-        (self.0.constants(h), self.0, h)
-    }
-
-    fn kick_before((constants, ..): &Self::Constants, w: &Self::Advected) -> Vector3<T> {
-        L::kick_before(constants, w)
-    }
-
-    fn step_terms(_: &Self::Constants, a: &Vector3<T>, w: &Self::Advected) -> Self::StepTerms {
-        (*a, *w)
-    }
-
-    fn newton_system(
-        constants: &Self::Constants,
-        terms: &Self::StepTerms,
-        half: &Vector3<T>,
-    ) -> (Vector3<T>, Matrix3<T>) {
-        SYSTEMS.set(SYSTEMS.get() + 1);
-        let f = L::Retraction::retract(&(half + half)).matrix();
-        let jacobian = constants.1.momentum_jacobian(&f, &terms.1, constants.2) * L::Retraction::tangent_of_half(half);
-        let residual = Self::newton_residual(constants, terms, half).momentum_defect;
-        (residual, jacobian * (constants.2 * nalgebra::convert::<f64, T>(0.5)))
-    }
-
-    fn newton_residual(
-        (constants, lagrangian, h): &Self::Constants,
-        (a, w): &Self::StepTerms,
-        half: &Vector3<T>,
-    ) -> Residual<Vector3<T>> {
-        let f = L::Retraction::retract(&(half + half)).matrix();
-        let kick_before = L::kick_before(constants, w);
-        let residual = lagrangian.legendre_minus(&f, w, *h) + kick_before - *a;
-        let moved = lagrangian.diamond(&f, w, *h) - kick_before;
-        let momentum_defect = residual * (*h * nalgebra::convert::<f64, T>(0.5));
-        Residual { momentum_defect, moving_kick: Some(moved) }
-    }
-
-    fn kick_after((constants, ..): &Self::Constants, increment: &Matrix3<T>, next: &Self::Advected) -> Vector3<T> {
-        L::kick_after(constants, increment, next)
-    }
 }
 
 /// A Lagrangian whose momentum equation is solved for another body: its roots have errors of some thousandths.
@@ -255,14 +157,6 @@ impl<L: Effect> Effect for Badly<L> {
     ) -> (Vector<Self>, Square<Self>) {
         let (residual, jacobian) = L::newton_system(constants, terms, half);
         (residual + *half * nalgebra::convert::<f64, Self::Scalar>(1e-3), jacobian)
-    }
-
-    fn newton_residual(
-        constants: &Self::Constants,
-        terms: &Self::StepTerms,
-        half: &Vector<Self>,
-    ) -> Residual<Vector<Self>> {
-        Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None }
     }
 }
 

@@ -232,9 +232,8 @@ fn terms_at_bodies_add_in_all_orders() {
     }
 }
 
-/// A solve without the Jacobian finds kicks, too, which those of other terms are added to.
 #[test]
-fn terms_of_a_body_with_an_expensive_jacobian_add() {
+fn terms_of_a_body_of_fourth_order_add() {
     for seed in 0..500 {
         let mut r = Random::new(seed);
         let (J, attitude, momentum) = (inertia(&mut r), r.rotation(), r.vector() * 2.0);

@@ -222,14 +222,12 @@ fn a_scene_holds_what_its_terms_name() {
         size_of::<State<SO3, (A::Advected, B::Advected)>>()
     }
     const VECTOR: usize = 3 * size_of::<f64>();
-    // Seven differences of increments and their number, by which expensive Lagrangians guess; elsewhere there is one.
-    const HISTORY: usize = 7 * VECTOR + size_of::<usize>();
     // The time of steps of another length, and what rounding has left behind of it.
     const ELAPSED: usize = 2 * size_of::<f64>();
     const {
         assert!(size::<RigidBody>() == size_of::<[f64; 9]>() + 4 * VECTOR + size_of::<u64>() + ELAPSED);
         assert!(size_of::<StateOf<RigidBody>>() == size::<RigidBody>());
-        assert!(size_of::<StateOf<SixthOrderBody>>() == size::<RigidBody>() - VECTOR + HISTORY);
+        assert!(size_of::<StateOf<SixthOrderBody>>() == size::<RigidBody>());
         assert!(size_of_sum::<RigidBody, Rotor>() == size::<RigidBody>());
         assert!(size_of_sum::<RigidBody, Gravity>() == size::<RigidBody>() + VECTOR);
         assert!(size_of_sum::<RigidBody, Gravity>() == size::<FullTop>());

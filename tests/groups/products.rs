@@ -204,11 +204,16 @@ fn components_are_in_the_order_of_the_factors() {
     assert!((back - xi * 0.05).norm() < 1e-14);
 }
 
+/// The columns of a group's elements, with their units.
+fn columns<G: LieGroup>() -> Vec<String> {
+    let columns = G::factors().into_iter().flat_map(|factor| factor.columns());
+    columns.map(|(name, unit)| format!("{name} {unit}")).collect()
+}
+
 /// The columns of translations in a table are their vectors.
 #[test]
 fn numbers_of_translations() {
-    let names: Vec<_> =
-        <(SO3, R1, R3)>::named_numbers().into_iter().map(|(name, unit)| format!("{name} {unit}")).collect();
+    let names = columns::<(SO3, R1, R3)>();
     assert_eq!(names.join(","), "q_w_1 1,q_x_1 1,q_y_1 1,q_z_1 1,x_2 m,x_3 m,y_3 m,z_3 m");
     let (line, space) = (R1::from(Vector1::new(5.0)), R3::from(Vector3::new(6.0, 7.0, 8.0)));
     let mut numbers = [0.0; 9];
@@ -221,11 +226,12 @@ fn numbers_of_translations() {
 /// In a table the factors follow each other.
 #[test]
 fn numbers_of_a_product_are_those_of_its_factors() {
-    let names: Vec<_> = Product::named_numbers().into_iter().map(|(name, unit)| format!("{name} {unit}")).collect();
+    let names = columns::<Product>();
     let expected = "q_w_1 1,q_x_1 1,q_y_1 1,q_z_1 1,\
         g_11_2 ,g_12_2 ,g_13_2 ,g_21_2 ,g_22_2 ,g_23_2 ,g_31_2 ,g_32_2 ,g_33_2 ";
     assert_eq!(names.join(","), expected);
-    let components: Vec<_> = Product::named_components().into_iter().map(|(name, units)| (name, units[0])).collect();
+    let components = Product::factors().into_iter().flat_map(|factor| factor.components);
+    let components: Vec<_> = components.map(|(name, units)| (name, units[0])).collect();
     let expected = [("x_1", "rad/s"), ("y_1", "rad/s"), ("z_1", "rad/s"), ("1_2", ""), ("2_2", ""), ("3_2", "")];
     assert_eq!(components, expected.map(|(name, unit)| (name.to_owned(), unit)));
 

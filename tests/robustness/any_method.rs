@@ -7,7 +7,7 @@ use declarations::{HeavyTop, Motion};
 use liestep::groups::Advected;
 use liestep::mechanics::{DiscreteLagrangian, Effect, Term};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme, SymmetricBody};
-use liestep::motion::{AnyStepper, Integrator as _, Plan, Remedy, StepReport};
+use liestep::motion::{GroupStepper, Integrator as _, Plan, Remedy, StepReport};
 use liestep::prelude::*;
 use liestep::recording::{Recorder, Table};
 use liestep::with::{Checkpoint, CheckpointError, Compensable};
@@ -176,7 +176,7 @@ where
 
 /// Checks that a recorder receives the steps of `run`, to the bit, and that between two steps there is a path from the
 /// one to the other in the group, with the vertical momentum conserved.
-fn assert_is_observed<A: Advected<SO3>>(name: &str, stepper: &AnyStepper<SO3, A>) {
+fn assert_is_observed<A: Advected<SO3>>(name: &str, stepper: &GroupStepper<SO3, A>) {
     let start = stepper.start(attitude(), VELOCITY).unwrap();
     let (mut observed, mut stepped) = (start.clone(), start.clone());
     let mut recorder = Recorder::new(stepper, Table::new());
@@ -238,7 +238,7 @@ where
     P: Plan<S, Kept: 'static> + Clone + 'static,
 {
     assert_all(name, stepper, own);
-    assert_is_observed(name, &stepper.clone().or_substeps(2).into_any());
+    assert_is_observed(name, &stepper.clone().or_substeps(2).into_any().on_group::<SO3, S::Advected>().unwrap());
     let substeps = stepper.clone().or_substeps(8);
     assert_all(&format!("{name}, or substeps"), &substeps, own);
     let (mut plain, mut other) = (started(stepper), started(&substeps));

@@ -7,7 +7,6 @@ mod observed;
 mod one_top;
 mod policies;
 mod recorded;
-mod secants;
 mod setup;
 mod simplified;
 mod solvability;

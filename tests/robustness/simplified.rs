@@ -2,7 +2,9 @@
 //! suffices.
 
 use checks::any_scalar::Top;
-use checks::solvers::{WithJacobian, jacobians};
+use checks::solvers::{Counted, jacobians};
+use declarations::{FourthOrderTop, SixthOrderTop};
+use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::motion::DiscreteLiePoisson;
 use liestep::prelude::*;
 use nalgebra::{RealField, UnitQuaternion, Vector3, convert};
@@ -22,7 +24,7 @@ fn top<T: RealField + Copy>(moments: [f64; 3]) -> Top<T> {
 /// for `f64`, and for numbers with a derivative, which are solved by Newton's iteration alone. Also the number of steps
 /// for which one Jacobian was enough.
 fn missing(moments: [f64; 3], h: f64, speed: f64) -> ([f64; 2], u32) {
-    let plain = DiscreteLiePoisson::new(WithJacobian(top::<f64>(moments)), h).unwrap();
+    let plain = DiscreteLiePoisson::new(Counted(top::<f64>(moments)), h).unwrap();
     let dual = DiscreteLiePoisson::new(top::<Dual64>(moments), h.into()).unwrap();
     let stepper = Stepper::new(top::<f64>(moments), h).unwrap();
     let tilt = UnitQuaternion::from_scaled_axis(Vector3::x() * 0.8);
@@ -67,12 +69,45 @@ fn solves_end_at_the_level_of_rounding() {
     assert!(with_one.chunks(7).all(|single| single[1] > 900 && single[6] == 0), "{with_one:?}");
 }
 
+/// One more of Newton's updates moves a root by less than two roundings of the residual, also if the Jacobian is much more
+/// expensive than the residual.
+#[test]
+fn higher_orders_end_at_the_level_of_rounding() {
+    fn last<L>(h: f64) -> f64
+    where
+        L: declarations::Top + DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular + Clone,
+    {
+        let J = Inertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5)).unwrap();
+        let top = L::new(J, 9.81, Vector3::new(0.3, 0.2, 0.4), Vector3::z());
+        let (flow, constants) = (DiscreteLiePoisson::new(top.clone(), h).unwrap(), top.constants(h));
+        let stepper = Stepper::new(top, h).unwrap();
+        let tilt = UnitQuaternion::from_scaled_axis(Vector3::x() * 0.8);
+        let mut state = stepper.start(tilt, Vector3::new(0.8, 2.4, 7.2)).unwrap();
+        let (mut guess, mut sum) = (stepper.velocity(&state) * h, 0.0);
+        for _ in 0..200 {
+            let (momentum, w) = (state.momentum(), state.advected());
+            let root = flow.step(&momentum, &w, &guess).unwrap().coordinates;
+            let terms = L::step_terms(&constants, &(momentum + L::kick_before(&constants, &w)), &w);
+            let (residual, jacobian) = L::newton_system(&constants, &terms, &(root * 0.5));
+            sum += 2.0 * jacobian.lu().solve(&residual).unwrap().norm() / root.norm() / f64::EPSILON;
+            guess = root;
+            stepper.step(&mut state).unwrap();
+        }
+        sum / 200.0
+    }
+    for h in [1e-4, 0.01, 0.05] {
+        let missing = [last::<FourthOrderTop>(h), last::<SixthOrderTop>(h)];
+        println!("h = {h}: {missing:?} roundings");
+        assert!(missing.iter().all(|missing| *missing < 2.0), "h = {h}: {missing:?}");
+    }
+}
+
 /// The determinant vanishes at a right angle. If it is less than a sixteenth of that at rest, each iteration has its
 /// own Jacobian, however good the guess.
 #[test]
 fn near_the_fold_every_iteration_has_its_jacobian() {
     let body = Top { weight: 0.0, ..top::<f64>([3.0, 3.0, 4.0]) };
-    let flow = DiscreteLiePoisson::new(WithJacobian(body), 1.0).unwrap();
+    let flow = DiscreteLiePoisson::new(Counted(body), 1.0).unwrap();
     for (angle, expected) in [(0.5_f64, 1), (1.0, 1), (1.49, 1), (1.52, 2), (1.55, 2)] {
         // The momentum is `p = J sin θ` for a step of one second.
         let momentum = Vector3::z() * (4.0 * angle.sin());

@@ -6,10 +6,9 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use clap::ArgMatches;
-use liestep::SO3;
-use liestep::motion::{Integrator, Moment};
+use liestep::motion::Moment;
 use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
-use liestep_scene::{Column, LeastWhole, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread, Whole};
+use liestep_scene::{Column, LeastWhole, MemberEvent, Mistake, Rotating, SceneEnsemble, SceneFile, Spread, Whole};
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
@@ -99,7 +98,7 @@ fn made(
 }
 
 /// Simulates the chunks of members, in lanes or one by one, and prints their outcome.
-fn finished<M: Integrator<Group = SO3> + 'static>(
+fn finished<M: Rotating + 'static>(
     path: &Path,
     scene: &SceneFile,
     drawn: &SceneEnsemble,
@@ -132,11 +131,7 @@ fn finished<M: Integrator<Group = SO3> + 'static>(
 }
 
 /// The plan of an ensemble. The file's text identifies it.
-fn plan<M: Integrator<Group = SO3> + 'static>(
-    scene: &SceneFile,
-    drawn: &SceneEnsemble,
-    members: Ensemble<M>,
-) -> Ensemble<M> {
+fn plan<M: Rotating + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, members: Ensemble<M>) -> Ensemble<M> {
     let mut plan = members.seed(drawn.seed);
     if let Some(every) = drawn.every {
         plan = plan.every(every);
@@ -180,10 +175,7 @@ fn number(member: &Member<'_>, name: &str, spread: Spread) -> f64 {
 }
 
 /// The section of an event: its times, and the scene's columns then.
-fn section<M: Integrator<Group = SO3> + 'static>(
-    scene: &SceneFile,
-    (name, event, function, stops): MemberEvent<M>,
-) -> Section<M> {
+fn section<M: Rotating + 'static>(scene: &SceneFile, (name, event, function, stops): MemberEvent<M>) -> Section<M> {
     let section = Section::new(event, function);
     let section = if stops { section.until() } else { section };
     let section = section.keep([&format!("{name}_t")], |now| [now.time()]);

@@ -159,7 +159,7 @@ impl<M: Integrator> Ensemble<M> {
             let has_left = course.ended.as_ref().is_some_and(|(_, why)| why.is_none());
             let (state, failure) = course.ended.take().unwrap_or_else(|| (group.state(place), error));
             let run = Run { member, stepper, state: &state };
-            let made = state.steps() - start.steps();
+            let made = M::steps(&state) - M::steps(start);
             let status = match failure {
                 Some(_) => Status::Stopped,
                 None if has_left => Status::Left,

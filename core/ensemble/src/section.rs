@@ -3,7 +3,7 @@
 use core::any::Any;
 use core::fmt;
 
-use liestep::motion::{Batchable, Integrator, Moment, ScalarIn};
+use liestep::motion::{Batchable, Integrator, Moment};
 use liestep::numbers::InLanes;
 use liestep::recording::{Event, Run, RunError};
 use simba::simd::{AutoF64x8, SimdValue as _};
@@ -108,7 +108,7 @@ impl<M: Integrator> Section<M> {
     /// If the event is [terminal](Event::terminal): a member ends by [`until`](Self::until).
     pub fn new<Y: Into<f64>>(event: Event, function: impl Fn(&Moment<'_, M>) -> Y + Send + Sync + 'static) -> Self
     where
-        ScalarIn<M>: Into<f64>,
+        M::Scalar: Into<f64>,
     {
         assert!(!event.is_terminal(), "members are ended by `until`: leave `terminal` out");
         Self {
@@ -231,7 +231,8 @@ impl<M: Integrator> Section<M> {
             return Ok(Vec::new());
         }
         let before = waited.unwrap_or_else(at.before);
-        let mut found = (self.find)(self, stepper, &before, (at.now)().steps() - before.steps()).map_err(failure)?;
+        let mut found =
+            (self.find)(self, stepper, &before, M::steps(&(at.now)()) - M::steps(&before)).map_err(failure)?;
         if self.only_first {
             found.truncate(1);
             watch.is_done = !found.is_empty();
@@ -268,7 +269,7 @@ fn find<M: Integrator>(
     steps: u64,
 ) -> Result<Vec<Crossing>, RunError>
 where
-    ScalarIn<M>: Into<f64>,
+    M::Scalar: Into<f64>,
 {
     let (mut state, mut found) = (before.clone(), Vec::new());
     let run = Run::new(stepper, &mut state);

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use common::{Folder, Top, axis, contents, made, top, tops, with_columns};
 use liestep::mechanics::InertiaError;
-use liestep::motion::{Integrator, Motion, StepReport};
+use liestep::motion::{Factor, Integrator, StepReport};
 use liestep::{SO3, StepError, Stepper};
 use liestep_ensemble::{
     Engine, Ensemble, Failure, Fault, Histogram, Local, MakeChunk, MemberFailure, Report, Shard, Status, Store,
@@ -371,8 +371,10 @@ fn a_run_can_be_watched_and_stopped() {
 struct OnlySteps(Top);
 
 impl Integrator for OnlySteps {
-    type Group = SO3;
-    type Advected = <Top as Integrator>::Advected;
+    type Scalar = f64;
+    type Motion = <Top as Integrator>::Motion;
+    type Velocity = Vector3<f64>;
+    type Inertia = <Top as Integrator>::Inertia;
     type State = common::State;
 
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
@@ -383,11 +385,11 @@ impl Integrator for OnlySteps {
         Err(StepError::Singular)
     }
 
-    fn part(&self, state: &Self::State, fraction: f64) -> Result<Motion<SO3, Self::Advected>, StepError> {
+    fn part(&self, state: &Self::State, fraction: f64) -> Result<Self::Motion, StepError> {
         self.0.part(state, fraction)
     }
 
-    fn adopt(&self, motion: &Motion<SO3, Self::Advected>) -> Self::State {
+    fn adopt(&self, motion: &Self::Motion) -> Self::State {
         self.0.adopt(motion)
     }
 
@@ -395,11 +397,27 @@ impl Integrator for OnlySteps {
         self.0.step_size()
     }
 
-    fn velocity(&self, motion: &Motion<SO3, Self::Advected>) -> Vector3<f64> {
+    fn steps(motion: &Self::Motion) -> u64 {
+        motion.steps()
+    }
+
+    fn factors(&self) -> Vec<Factor> {
+        self.0.factors()
+    }
+
+    fn inertia(&self) -> Self::Inertia {
+        self.0.inertia()
+    }
+
+    fn write(&self, motion: &Self::Motion, inertia: &Self::Inertia, attitude: &mut [f64], row: &mut [f64]) {
+        self.0.write(motion, inertia, attitude, row);
+    }
+
+    fn velocity(&self, motion: &Self::Motion) -> Vector3<f64> {
         self.0.velocity(motion)
     }
 
-    fn energy(&self, motion: &Motion<SO3, Self::Advected>) -> f64 {
+    fn energy(&self, motion: &Self::Motion) -> f64 {
         self.0.energy(motion)
     }
 }

@@ -214,19 +214,10 @@ impl Declaration {
         Ok(all)
     }
 
-    /// Whether a solve with a kinetic part is faster without the Jacobian.
-    pub(crate) const fn is_expensive(&self) -> bool {
-        self.staged.has_kinetic && self.staged.is_expensive
-    }
-
     /// The name of the kinetic part's type.
     #[must_use]
     pub const fn kinetic(&self) -> &'static str {
-        match (self.staged.has_kinetic, self.staged.is_expensive) {
-            (false, _) => "WithoutKinetic",
-            (true, false) => "WithKinetic",
-            (true, true) => "WithExpensiveKinetic",
-        }
+        if self.staged.has_kinetic { "WithKinetic" } else { "WithoutKinetic" }
     }
 
     /// The group as it is written in Rust.

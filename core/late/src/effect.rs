@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use liestep::groups::{Advected, CayleyRetraction, LieGroup, Retraction};
-use liestep::mechanics::{DiscreteLagrangian, Effect, KineticPart, Limit, Parts, Residual, SceneVisitor};
+use liestep::mechanics::{DiscreteLagrangian, Effect, KineticPart, Limit, Parts, SceneVisitor};
 use liestep::numbers::{Blocks, Coordinates, Entries, Real, real};
 use liestep_derivation::Array;
 
@@ -205,10 +205,6 @@ where
         constants.declaration.apart
     }
 
-    fn jacobian_is_expensive(constants: &Self::Constants) -> bool {
-        constants.declaration.is_expensive()
-    }
-
     fn describe(&self, visitor: &mut dyn SceneVisitor<G::Scalar>) {
         visitor.term(&self.declaration.derivation);
         for (index, parameter) in self.declaration.parameters.iter().enumerate() {
@@ -302,11 +298,10 @@ where
     }
 
     #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]
-    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Residual<Vector<G>> {
-        room!(outputs: G::Scalar, 2 * G::DIMENSION);
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<G>) -> Vector<G> {
+        room!(outputs: G::Scalar, G::DIMENSION);
         iteration::<G, W, B>((&constants.stages.newton_residual, &constants.numbers), terms, half, outputs);
-        let moving_kick = constants.declaration.is_expensive.then(|| vector(&outputs[G::DIMENSION..]));
-        Residual { momentum_defect: vector(outputs), moving_kick }
+        vector(outputs)
     }
 
     #[cfg_attr(all(not(debug_assertions), not(feature = "small")), inline(always))]

@@ -1,5 +1,6 @@
 //! Errors of texts and of their numbers.
 
+use liestep_derivation::whole::StepRefusal;
 use thiserror::Error;
 
 /// A mistake of a text, with its place.
@@ -38,9 +39,9 @@ pub enum LateError {
     /// Machine code can't be generated, for this reason.
     #[error("no machine code can be made: {0}")]
     Machine(String),
-    /// The step isn't written in C, for this reason.
-    #[error("{0}")]
-    C(&'static str),
+    /// The declaration has no step as programs, for this reason.
+    #[error(transparent)]
+    Step(#[from] StepRefusal),
     /// The sum has no declarations.
     #[error("a sum has a declaration at least")]
     Nothing,

@@ -5,7 +5,7 @@
 //! `{lanes, gradients} → effect → term → declaration → sum → {frames, specialised → code} → error`, and
 //! `{latex, written} → declaration`: a [`Declaration`] is the derivation of a text, with its stages as straight-line
 //! programs, or the `sum` of several; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as
-//! any other. A [`Backend`] runs the programs: [`Interpreter`] here, machine code in `liestep-machine`. `carried`
+//! any other; a [`Whole`] is one as a stepper on any group, by the whole step as data. A [`Backend`] runs the programs: [`Interpreter`] here, machine code in `liestep-machine`. `carried`
 //! compares advected parameters with their type.
 #![forbid(unsafe_code)]
 
@@ -21,6 +21,7 @@ mod latex;
 mod specialised;
 mod sum;
 mod term;
+mod whole;
 mod written;
 
 pub use carried::Slots;
@@ -33,4 +34,5 @@ pub use latex::latex;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use specialised::specialised;
 pub use term::{Late, numbers};
+pub use whole::{Whole, WholeComposed, WholeFamily};
 pub use written::{c, rust};

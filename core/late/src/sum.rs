@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use liestep_derivation::{Array, Operation, Parameter, Program, Role, Source, StagedDeclaration, Stages};
+use liestep_derivation::whole::{Value, Words};
+use liestep_derivation::{Array, Parameter, Program, Role, Source, StagedDeclaration, Stages};
 
 use crate::error::LateError;
 use crate::frames::{Carriage, Combined};
-use crate::specialised::{Fold, Value};
 
 /// A term, and where its numbers begin among those of all.
 struct Part<'a> {
@@ -27,20 +27,20 @@ enum Weights {
 }
 
 impl Weights {
-    fn times(self, fold: &mut Fold, (weight, _): (Option<[usize; 2]>, usize), value: Value) -> Value {
+    fn times(self, words: &mut Words, (weight, _): (Option<[usize; 2]>, usize), value: Value) -> Value {
         let Some([parameter, constant]) = weight else { return value };
         let weight = match self {
             Self::Constants => Source::new(Array::Constants, constant),
             Self::Parameters => Source::new(Array::Parameters, parameter),
         };
-        fold.kept(Operation::Multiply(0, 0), [Value::Input(weight), value])
+        words.multiply(Value::Input(weight), value)
     }
 }
 
 impl Part<'_> {
     fn moved(&self, source: Source, has_target: bool) -> Value {
         let first = match source.array {
-            Array::Target if !has_target => return Value::of(0.0),
+            Array::Target if !has_target => return Value::ZERO,
             Array::Parameters => self.parameters,
             Array::Constants => self.constants,
             _ => 0,
@@ -49,42 +49,42 @@ impl Part<'_> {
     }
 
     /// A program of a step, which reads its constants.
-    fn append(&self, fold: &mut Fold, program: &Program) -> Vec<Value> {
-        self.append_by(fold, program, Weights::Constants, self.has_target)
+    fn append(&self, words: &mut Words, program: &Program) -> Vec<Value> {
+        self.append_by(words, program, Weights::Constants, self.has_target)
     }
 
     /// A program that reads the parameters.
-    fn append_alone(&self, fold: &mut Fold, program: &Program) -> Vec<Value> {
-        self.append_by(fold, program, Weights::Parameters, self.has_target)
+    fn append_alone(&self, words: &mut Words, program: &Program) -> Vec<Value> {
+        self.append_by(words, program, Weights::Parameters, self.has_target)
     }
 
-    fn append_by(&self, fold: &mut Fold, program: &Program, weights: Weights, has_target: bool) -> Vec<Value> {
+    fn append_by(&self, words: &mut Words, program: &Program, weights: Weights, has_target: bool) -> Vec<Value> {
         let mut carried = HashMap::new();
         for &source in program.inputs.iter().filter(|source| matches!(source.array, Array::Advected | Array::Next)) {
-            let sum = self.carried[source.at].iter().fold(Value::of(0.0), |sum, &one| {
-                let product = weights.times(fold, one, Value::Input(Source::new(source.array, one.1)));
-                fold.kept(Operation::Add(0, 0), [sum, product])
+            let sum = self.carried[source.at].iter().fold(Value::ZERO, |sum, &one| {
+                let product = weights.times(words, one, Value::Input(Source::new(source.array, one.1)));
+                words.add(sum, product)
             });
             carried.insert(source, sum);
         }
         let moved = |source| carried.get(&source).copied().unwrap_or_else(|| self.moved(source, has_target));
-        fold.append(program, moved, Fold::kept)
+        words.append(program, moved)
     }
 
     /// `l`, momentum and Hessian at a velocity: those of `½ ξ·Jξ + s·ξ − V` where it is quadratic.
-    fn at_velocity(&self, fold: &mut Fold) -> [Vec<Value>; 3] {
+    fn at_velocity(&self, words: &mut Words) -> [Vec<Value>; 3] {
         if let Some(programs) = &self.staged.programs.at_velocity {
-            return programs.each_ref().map(|program| self.append_alone(fold, program));
+            return programs.each_ref().map(|program| self.append_alone(words, program));
         }
-        let at_rest = self.append_alone(fold, &self.staged.programs.at_rest);
+        let at_rest = self.append_alone(words, &self.staged.programs.at_rest);
         let size = dimension(self.staged);
-        let velocity = inputs(Array::Velocity, size);
+        let velocity = Value::inputs(Array::Velocity, size);
         let (hessian, rest) = at_rest.split_at(size * size);
-        let image: Vec<Value> = hessian.chunks(size).map(|row| dot(fold, row, &velocity)).collect();
-        let (square, linear) = (dot(fold, &velocity, &image), dot(fold, &rest[..size], &velocity));
-        let kinetic = fold.multiply(square, Value::of(0.5));
-        let sum = fold.add(kinetic, linear);
-        [vec![fold.subtract(sum, rest[size])], added(fold, &image, &rest[..size]), hessian.to_vec()]
+        let image: Vec<Value> = hessian.chunks(size).map(|row| words.dot(row, &velocity)).collect();
+        let (square, linear) = (words.dot(&velocity, &image), words.dot(&rest[..size], &velocity));
+        let kinetic = words.multiply(square, Value::of(0.5));
+        let sum = words.add(kinetic, linear);
+        [vec![words.subtract(sum, rest[size])], words.added(&image, &rest[..size]), hessian.to_vec()]
     }
 }
 
@@ -93,83 +93,68 @@ fn dimension(staged: &StagedDeclaration) -> usize {
     staged.programs.kick_before.outputs.len()
 }
 
-fn inputs(array: Array, count: usize) -> Vec<Value> {
-    (0..count).map(|at| Value::Input(Source::new(array, at))).collect()
-}
-
-fn dot(fold: &mut Fold, a: &[Value], b: &[Value]) -> Value {
-    a.iter().zip(b).fold(Value::of(0.0), |sum, (&a, &b)| {
-        let product = fold.multiply(a, b);
-        fold.add(sum, product)
-    })
-}
-
-fn added(fold: &mut Fold, a: &[Value], b: &[Value]) -> Vec<Value> {
-    a.iter().zip(b).map(|(&a, &b)| fold.kept(Operation::Add(0, 0), [a, b])).collect()
-}
-
 /// Residual and Jacobian, multiplied by this power of `1 + |y|²`, as `Coordinates::raised` does it.
-fn raised(fold: &mut Fold, system: Vec<Value>, size: usize, power: u32) -> Vec<Value> {
+fn raised(words: &mut Words, system: Vec<Value>, size: usize, power: u32) -> Vec<Value> {
     if power == 0 {
         return system;
     }
     let (residual, jacobian) = system.split_at(size);
-    let half = inputs(Array::Half, size);
-    let square = dot(fold, &half, &half);
-    let d = fold.add(square, Value::of(1.0));
-    let below = (1..power).fold(Value::of(1.0), |product, _| fold.multiply(product, d));
-    let (factor, slope) = (fold.multiply(below, d), fold.multiply(below, Value::of(2.0 * f64::from(power))));
-    let mut raised: Vec<Value> = residual.iter().map(|&entry| fold.multiply(entry, factor)).collect();
+    let half = Value::inputs(Array::Half, size);
+    let square = words.dot(&half, &half);
+    let d = words.add(square, Value::ONE);
+    let below = (1..power).fold(Value::ONE, |product, _| words.multiply(product, d));
+    let (factor, slope) = (words.multiply(below, d), words.multiply(below, Value::of(2.0 * f64::from(power))));
+    let mut raised: Vec<Value> = residual.iter().map(|&entry| words.multiply(entry, factor)).collect();
     for (row, &defect) in jacobian.chunks(size).zip(residual) {
         for (&entry, &y) in row.iter().zip(&half) {
-            let outer = fold.multiply(defect, y);
-            let (scaled, moved) = (fold.multiply(entry, factor), fold.multiply(outer, slope));
-            raised.push(fold.add(scaled, moved));
+            let outer = words.multiply(defect, y);
+            let (scaled, moved) = (words.multiply(entry, factor), words.multiply(outer, slope));
+            raised.push(words.add(scaled, moved));
         }
     }
     raised
 }
 
 /// What is computed for each part, added.
-fn sum_of<P>(parts: impl IntoIterator<Item = P>, mut of: impl FnMut(P, &mut Fold) -> Vec<Value>) -> Program {
-    let mut fold = Fold::default();
+fn sum_of<P>(parts: impl IntoIterator<Item = P>, mut of: impl FnMut(P, &mut Words) -> Vec<Value>) -> Program {
+    let mut words = Words::default();
     let mut sum: Option<Vec<Value>> = None;
     for part in parts {
-        let one = of(part, &mut fold);
-        sum = Some(sum.map_or_else(|| one.clone(), |sum| added(&mut fold, &sum, &one)));
+        let one = of(part, &mut words);
+        sum = Some(sum.map_or_else(|| one.clone(), |sum| words.added(&sum, &one)));
     }
-    fold.program(&sum.unwrap_or_default())
+    words.program(&sum.unwrap_or_default())
 }
 
 /// Residual and Jacobian of kinetic parts, rotors and forces, all with the unknown in them.
 fn system(solved: &[&Part<'_>], outputs: usize) -> Program {
-    let (mut fold, mut sum, mut power) = (Fold::default(), Vec::new(), 0);
+    let (mut words, mut sum, mut power) = (Words::default(), Vec::new(), 0);
     for part in solved {
         let (size, own) = (dimension(part.staged), part.staged.denominators);
         let both = own.max(power);
-        let one = part.append(&mut fold, &part.staged.programs.newton_system);
-        let one = raised(&mut fold, one, size, both - own);
+        let one = part.append(&mut words, &part.staged.programs.newton_system);
+        let one = raised(&mut words, one, size, both - own);
         sum = if part.has_target {
             one
         } else {
             // What is added up so far is multiplied as one.
-            let before = raised(&mut fold, sum, size, both - power);
-            added(&mut fold, &before, &one)
+            let before = raised(&mut words, sum, size, both - power);
+            words.added(&before, &one)
         };
         power = both;
     }
     sum.truncate(outputs);
-    fold.program(&sum)
+    words.program(&sum)
 }
 
 fn programs(parts: &[Part<'_>], weights: &[usize]) -> Stages<Program> {
     let stage = |program: fn(&Stages<Program>) -> &Program| {
-        sum_of(parts, |part, fold| part.append(fold, program(&part.staged.programs)))
+        sum_of(parts, |part, words| part.append(words, program(&part.staged.programs)))
     };
     let alone = |program: fn(&Stages<Program>) -> &Program| {
-        sum_of(parts, |part, fold| part.append_alone(fold, program(&part.staged.programs)))
+        sum_of(parts, |part, words| part.append_alone(words, program(&part.staged.programs)))
     };
-    let mut constants = Fold::default();
+    let mut constants = Words::default();
     let of_terms = parts.iter().flat_map(|part| part.append(&mut constants, &part.staged.programs.constants));
     let of_weights = weights.iter().map(|&number| Value::Input(Source::new(Array::Parameters, number)));
     let of_all: Vec<Value> = of_terms.chain(of_weights).collect();
@@ -181,9 +166,9 @@ fn programs(parts: &[Part<'_>], weights: &[usize]) -> Stages<Program> {
     let derivatives = derivatives.filter(|derivatives| !derivatives.is_empty());
     let of_lagrangian = |at: usize| {
         let programs = parts.iter().filter_map(|part| Some((part, &part.staged.programs.lagrangian.as_ref()?[at])));
-        sum_of(programs, |(part, program), fold| part.append_alone(fold, program))
+        sum_of(programs, |(part, program), words| part.append_alone(words, program))
     };
-    let at_velocity = |at: usize| sum_of(parts, |part, fold| std::mem::take(&mut part.at_velocity(fold)[at]));
+    let at_velocity = |at: usize| sum_of(parts, |part, words| std::mem::take(&mut part.at_velocity(words)[at]));
     let mut all = parts.iter().map(|part| part.staged);
     Stages {
         constants: constants.program(&of_all),
@@ -192,7 +177,7 @@ fn programs(parts: &[Part<'_>], weights: &[usize]) -> Stages<Program> {
         newton_residual: system(&solved, size),
         kick_after: stage(|programs| &programs.kick_after),
         kick_derivative: derivatives
-            .map(|derivatives| sum_of(derivatives, |(part, program), fold| part.append(fold, program))),
+            .map(|derivatives| sum_of(derivatives, |(part, program), words| part.append(words, program))),
         momentum_jacobian: alone(|programs| &programs.momentum_jacobian),
         at_rest: alone(|programs| &programs.at_rest),
         at_velocity: all.clone().any(|staged| !staged.is_quadratic).then(|| [0, 1, 2].map(at_velocity)),
@@ -208,23 +193,23 @@ fn derivatives(parts: &[Part<'_>], carried: usize) -> Option<[Program; 4]> {
     let all = all.collect::<Option<Vec<_>>>()?;
     let size = dimension(parts.first()?.staged);
     let of = |at: usize, of_place: usize, of_number: usize| {
-        let (mut fold, mut sum) = (Fold::default(), Vec::new());
-        let mut behind = vec![Value::of(0.0); carried * of_number];
+        let (mut words, mut sum) = (Words::default(), Vec::new());
+        let mut behind = vec![Value::ZERO; carried * of_number];
         for (part, programs) in &all {
             // The weights are those of all terms.
-            let mut one = part.append_by(&mut fold, &programs[at], Weights::Parameters, true);
+            let mut one = part.append_by(&mut words, &programs[at], Weights::Parameters, true);
             let numbers = one.split_off(of_place.min(one.len()));
             for (own, combined) in numbers.chunks(of_number.max(1)).zip(&part.carried) {
                 for &entry in combined {
                     for (derivative, to) in own.iter().zip(&mut behind[entry.1 * of_number..]) {
-                        let product = Weights::Parameters.times(&mut fold, entry, *derivative);
-                        *to = fold.kept(Operation::Add(0, 0), [*to, product]);
+                        let product = Weights::Parameters.times(&mut words, entry, *derivative);
+                        *to = words.add(*to, product);
                     }
                 }
             }
-            sum = if sum.is_empty() { one } else { added(&mut fold, &sum, &one) };
+            sum = if sum.is_empty() { one } else { words.added(&sum, &one) };
         }
-        fold.program(&[sum, behind].concat())
+        words.program(&[sum, behind].concat())
     };
     Some([of(0, usize::MAX, 0), of(1, usize::MAX, 0), of(2, size, 1), of(3, 0, 2 * size)])
 }
@@ -270,7 +255,6 @@ pub(crate) fn summed(terms: &[&StagedDeclaration], in_frames: bool) -> Result<St
         factors: first.factors.clone(),
         derivation: joined(|staged| &staged.derivation, "\n"),
         has_kinetic: terms.iter().any(|staged| staged.has_kinetic),
-        is_expensive: false,
         parts: [0, 1, 2].map(|part| terms.iter().any(|staged| staged.parts[part])),
         denominators: solved().map(|staged| staged.denominators).max().unwrap_or(0),
         has_constant_inertia: terms.iter().all(|staged| staged.has_constant_inertia),

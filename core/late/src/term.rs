@@ -22,9 +22,8 @@ use crate::specialised::specialised;
 pub(crate) type Specialise<T> = fn(&Stages<Program>, &[T]) -> Stages<Program>;
 
 /// A declaration that was read while the program runs, with numbers for its parameters: an effect on the group `G`,
-/// with the advected or given parameters `W`, as the macro has them, and the kinetic part `K`, which may be
-/// [`WithEitherKinetic`](liestep::mechanics::WithEitherKinetic) if it isn't known. The elements of a longer tuple that
-/// the declaration doesn't name are zero. `B` runs its programs.
+/// with the advected or given parameters `W`, as the macro has them, and the kinetic part `K`. The elements of a longer
+/// tuple that the declaration doesn't name are zero. `B` runs its programs.
 ///
 /// # Source
 ///
@@ -94,10 +93,8 @@ impl<G: LieGroup, W: Advected<G> + Slots, K: KineticPart, B: Backend<G::Scalar>>
         if !slots.starts_with(&declaration.slots()) {
             return Err(LateError::Advected { declared: format!("{:?}", declaration.slots()) });
         }
-        let is_expensive = declaration.is_expensive() || K::IS_EITHER;
         let only_kicks = !declaration.parts.unknown && declaration.has_constant_inertia && declaration.is_quadratic;
-        let has_kind = (K::IS_THERE, K::JACOBIAN_IS_EXPENSIVE) == (declaration.has_kinetic, is_expensive);
-        if !has_kind || !(K::MAY_BE_UNKNOWN || only_kicks) {
+        if K::IS_THERE != declaration.has_kinetic || !(K::MAY_BE_UNKNOWN || only_kicks) {
             return Err(LateError::Kinetic { declared: declaration.kinetic() });
         }
         let numbers = declaration.parameters.iter().map(|parameter| parameter.kind.len()).sum();

@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use liestep_derivation::{Action, Array, Function, Operation, Program};
+use liestep_derivation::whole::{MatrixFactor, Programs, WholeStep};
+use liestep_derivation::{Array, Function, Operation, Program};
 
-use crate::declaration::{Declaration, InSpace};
+use crate::declaration::Declaration;
 use crate::error::LateError;
 
 /// A language, as far as its straight-line code differs from another's.
@@ -34,12 +35,14 @@ impl Language {
     fn body(self, program: &Program) -> Result<String, LateError> {
         let declared = if self == Self::C { "const double" } else { "let" };
         let values = program.inputs.iter().map(|source| match (self, source.array) {
-            (_, Array::Step) => Ok("h".to_owned()),
-            (_, array) => Ok(format!("{}[{}]", name(array), source.at)),
+            (Self::Rust, Array::Step) => "h".to_owned(),
+            (Self::C, Array::Step) => "in->h".to_owned(),
+            (Self::Rust, array) => format!("{}[{}]", name(array), source.at),
+            (Self::C, array) => format!("in->{}[{}]", name(array), source.at),
         });
-        let literals = program.literals.iter().map(|literal| Ok(format!("{literal:?}")));
+        let literals = program.literals.iter().map(|literal| format!("{literal:?}"));
         let operations = program.operations.iter().map(|&operation| {
-            Ok(match operation {
+            Ok::<_, LateError>(match operation {
                 Operation::Negate(a) => format!("-x{a}"),
                 Operation::Add(a, b) => format!("x{a} + x{b}"),
                 Operation::Subtract(a, b) => format!("x{a} - x{b}"),
@@ -49,7 +52,7 @@ impl Language {
             })
         });
         let mut text = String::new();
-        for (at, value) in values.chain(literals).chain(operations).enumerate() {
+        for (at, value) in values.chain(literals).map(Ok).chain(operations).enumerate() {
             let _ = writeln!(text, "    {declared} x{at} = {};", value?);
         }
         for (at, output) in program.outputs.iter().enumerate() {
@@ -73,6 +76,10 @@ const fn name(array: Array) -> &'static str {
         Array::Half => "half",
         Array::Velocity => "velocity",
         Array::Target => "target",
+        Array::Attitude => "attitude",
+        Array::Momentum => "momentum",
+        Array::History => "history",
+        Array::Factors => "factors",
     }
 }
 
@@ -127,75 +134,78 @@ fn has_own_functions(program: &Program) -> bool {
     program.operations.iter().any(is_own)
 }
 
-/// A step on SO(3) as C99 that needs nothing but `math.h`: with `-ffp-contract=off` it has the bits of the library's
-/// step. A step that takes the library's special care is refused in C: it returns 0 and changes nothing.
+/// A step as C99 that needs nothing but `math.h`, on any group: with `-ffp-contract=off` it has the bits of the whole step by
+/// interpretation. A step that takes special care is refused in C: it returns 0 and changes nothing.
 ///
 /// # Errors
 ///
-/// [`LateError::C`]: the declaration is a force, on another group, advects other things than covectors, or its solve
-/// goes without the Jacobian; [`LateError::Function`]: it needs functions that C doesn't have.
+/// [`LateError::Step`]: there is no step as programs, as of a force alone; [`LateError::Function`]: it needs functions that C
+/// doesn't have.
 pub fn c(declaration: &Declaration) -> Result<String, LateError> {
-    let is_so3 = declaration.group() == "SO3" && !declaration.in_increment;
-    let moves_simply = |action| matches!(action, Action::Covector(_) | Action::Given);
-    if !is_so3 || !declaration.carried.iter().all(|carried| moves_simply(carried.action)) {
-        return Err(LateError::C("a step is written in C on `SO3`, with vectors that are advected or given"));
-    }
-    if !declaration.has_kinetic || declaration.is_expensive {
-        return Err(LateError::C("a step is written in C of a Lagrangian with a kinetic part and a cheap Jacobian"));
-    }
-    let mut text = HEAD.replace("NAME", &declaration.name);
-    let parameters = declaration.parameters.iter().map(|parameter| (parameter.name.as_str(), parameter.kind.len()));
+    let step = WholeStep::of(declaration)?;
+    let mut text = HEAD.replace("NAME", &declaration.name).replace("GROUP", &declaration.group());
     let mut first = 0;
-    for (name, length) in parameters {
-        let _ = writeln!(text, "   parameters[{first}..{}]: {name}", first + length);
+    for parameter in &declaration.parameters {
+        let length = parameter.kind.len();
+        let _ = writeln!(text, "   parameters[{first}..{}]: {}", first + length, parameter.name);
         first += length;
     }
-    let carried: usize = declaration.carried.iter().map(|carried| carried.shape.0 * carried.shape.1).sum();
-    let constants = declaration.programs.constants.outputs.len().max(1);
-    let _ = writeln!(text, "*/\n#include <math.h>\n");
-    let _ =
-        writeln!(text, "enum {{ PARAMETERS = {first}, CONSTANTS = {constants}, ADVECTED = {} }};\n", carried.max(1));
-    for (stage, program) in stages(declaration) {
-        let parameter = |array: &Array| match array {
-            Array::Step => "double h".to_owned(),
-            array => format!("const double *{}", name(*array)),
-        };
-        let of_stage: &[Array] = match stage {
-            "constants" => &[Array::Step, Array::Parameters],
-            "kick_before" => &[Array::Constants, Array::Advected],
-            "kick_after" => &[Array::Constants, Array::Increment, Array::Next],
-            _ => &[Array::Constants, Array::Half, Array::Target, Array::Advected],
-        };
-        if arrays(program).iter().any(|array| !of_stage.contains(array)) {
-            return Err(LateError::C("a step is written in C where it needs no inverse of the increment"));
-        }
-        let list: Vec<String> = of_stage.iter().map(parameter).collect();
-        let unused = of_stage.iter().fold(String::new(), |text, &array| text + "    (void)" + name(array) + ";\n");
-        let body = Language::C.body(program)?;
-        let _ = writeln!(text, "static void {stage}({}, double *outputs) {{\n{unused}{body}}}\n", list.join(", "));
+    let (sizes, programs) = (&step.sizes, &step.programs);
+    let constants = [
+        ("PARAMETERS", first.max(1)),
+        ("CONSTANTS", programs.constants.outputs.len().max(1)),
+        ("ENTRIES", sizes.entries),
+        ("N", sizes.n),
+        ("CARRIED", sizes.carried),
+        ("ADVECTED", sizes.carried.max(1)),
+        ("DETS", sizes.dets),
+        ("NEAR", sizes.near),
+        ("ATTITUDES", sizes.attitudes),
+        ("RESTORED", programs.restored.outputs.len().max(1)),
+        ("IS_WHOLE", usize::from(step.factors.len() == 1)),
+        ("VARIES", usize::from(programs.safe.is_some())),
+    ];
+    let constants: Vec<String> = constants.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+    let _ = writeln!(text, "*/\n#include <math.h>\n\nenum {{\n    {}\n}};\n", constants.join(",\n    "));
+    let arrays: Vec<String> =
+        Array::ALL.iter().filter(|&&array| array != Array::Step).map(|&array| format!("*{}", name(array))).collect();
+    let _ = writeln!(text, "typedef struct {{\n    double h;\n    const double {};\n}} Inputs;\n", arrays.join(", "));
+    for (name, program) in functions(programs) {
+        let body = program.map_or(Ok(String::new()), |program| Language::C.body(program))?;
+        let _ = writeln!(
+            text,
+            "static void {name}(const Inputs *in, double *outputs) {{\n    (void)in, (void)outputs;\n{body}}}\n"
+        );
     }
-    let mut places = (String::new(), String::new());
-    let mut at = 0;
-    for (carried, value) in declaration.in_space() {
-        let length = carried.shape.0 * carried.shape.1;
-        let value = match value {
-            InSpace::Parameter(field) => format!("parameters[{} + i]", declaration.place(field).0),
-            InSpace::Direction(number) => format!("i == {number}"),
-            InSpace::Identity => format!("i / {0} == i % {0}", carried.shape.0),
-        };
-        let _ = writeln!(places.0, "    for (int i = 0; i < {length}; i++) spatial[{at} + i] = {value};");
-        if matches!(carried.action, Action::Covector(_)) {
-            let _ = writeln!(places.1, "    turned(matrix, from + {at}, to + {at}, is_change);");
-        } else {
-            let _ = writeln!(places.1, "    for (int i = 0; i < {length}; i++) to[{at} + i] = from[{at} + i];");
-        }
-        at += length;
-    }
-    let parts = declaration.parts;
-    let [before, after] = [parts.kick_before, parts.kick_after].map(|is_there| u8::from(is_there).to_string());
-    let step = STEP.replace("SPATIAL_VALUES", &places.0).replace("TURNED_VALUES", &places.1);
-    text += &step.replace("HAS_KICK_BEFORE", &before).replace("HAS_KICK_AFTER", &after);
+    let identity = step.factors.iter().map(|factor| {
+        let (first, rows) = (factor.entry, factor.size());
+        format!("for (int i = 0; i < {rows}; i++) attitude[{first} + i * {}] = 1.0;", rows + 1)
+    });
+    let listed = |number: fn(&MatrixFactor) -> usize| {
+        let restored = step.factors.iter().filter(|factor| factor.is_restored());
+        restored.map(|factor| format!("{},", number(factor))).collect::<Vec<_>>().join(" ")
+    };
+    text += &STEP
+        .replace("IDENTITY", &identity.collect::<Vec<_>>().join("\n    "))
+        .replace("RESTORED_PLACES", &listed(|factor| factor.entry))
+        .replace("RESTORED_ENTRIES", &listed(|factor| factor.size() * factor.size()));
     Ok(text)
+}
+
+/// The programs that a step in C calls.
+fn functions(programs: &Programs) -> [(&'static str, Option<&Program>); 10] {
+    [
+        ("constants", Some(&programs.constants)),
+        ("target", Some(&programs.target)),
+        ("iterate", Some(&programs.iterate)),
+        ("again", Some(&programs.again)),
+        ("finish", Some(&programs.finish)),
+        ("safe", programs.safe.as_ref()),
+        ("seen", Some(&programs.seen)),
+        ("restored", Some(&programs.restored)),
+        ("defect", Some(&programs.defect)),
+        ("rest", Some(&programs.rest)),
+    ]
 }
 
 const HEAD: &str = include_str!("head.c");

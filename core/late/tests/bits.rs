@@ -19,7 +19,7 @@ use liestep::lagrangian;
 use liestep::laws::samples::Random;
 use liestep::mechanics::{
     DiagonalNonstandardInertia, Effect, Inertia, OnlyKicks, SecondDerivatives, StepPoint, Term as _, Vector,
-    WithEitherKinetic, WithoutKinetic,
+    WithKinetic, WithoutKinetic,
 };
 use liestep::motion::Batch;
 use liestep::numbers::{Coordinates as _, Entries as _};
@@ -215,13 +215,13 @@ fn a_pace() {
 fn sums_of_what_is_read() {
     let (body, drag) = (random!(1, RigidBody { J_d }), random!(2, Drag { c J }));
     let gravity = random!(3, Gravity { m g rho up });
-    let late: Late<_, (), WithEitherKinetic> = Late::like(&body).expect("a declaration");
+    let late: Late<_, (), WithKinetic> = Late::like(&body).expect("a declaration");
     let late_drag: Late<_, (), WithoutKinetic> = Late::like(&drag).expect("a declaration");
     let late_gravity: Late<_, Vector3<f64>, WithoutKinetic> = Late::like(&gravity).expect("a declaration");
     assert_same(&(body + drag + gravity), &(late + late_drag + late_gravity), 4);
     assert!(Late::<SO3, (), OnlyKicks>::like(&drag).is_err() && Late::<_, _, OnlyKicks>::like(&gravity).is_ok());
     let body = random!(1, FourthOrderBody { J });
-    let late: Late<_, (), WithEitherKinetic> = Late::like(&body).expect("a declaration");
+    let late: Late<_, (), WithKinetic> = Late::like(&body).expect("a declaration");
     let late_gravity: Late<_, Vector3<f64>, WithoutKinetic> = Late::like(&gravity).expect("a declaration");
     assert_same(&(body + gravity), &(late + late_gravity), 5);
 }
@@ -258,12 +258,12 @@ macro_rules! as_summed {
             declared(&random!(0, $first { $($of_first)* })) $(, declared(&random!(0, $name { $($field)* })))+
         ];
         let declaration = Declaration::sum(&terms).expect("a sum");
-        let late = Late::<_, _, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&numbers(&sum)));
+        let late = Late::<_, _, WithKinetic>::of(declaration).and_then(|late| late.with_all(&numbers(&sum)));
         let late = late.expect("numbers");
         println!("{}", declaration.name);
         $assert(&sum, &late, $seed);
         assert_same_terms(&sum, &late, $seed);
-        assert!(Late::<_, _, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&[1.0])) != Ok(late));
+        assert!(Late::<_, _, WithKinetic>::of(declaration).and_then(|late| late.with_all(&[1.0])) != Ok(late));
     }};
 }
 
@@ -300,7 +300,7 @@ fn a_sum_in_frames() {
     let terms = [declared(&body), declared(&gravity), declared(&one), declared(&dipole), declared(&other)];
     let declaration = Declaration::sum_in_frames(&terms).expect("a sum");
     assert_eq!(declaration.carried.len(), 3);
-    let late = Late::<SO3, Frame, WithEitherKinetic>::of(declaration).and_then(|late| late.with_all(&numbers(&sum)));
+    let late = Late::<SO3, Frame, WithKinetic>::of(declaration).and_then(|late| late.with_all(&numbers(&sum)));
     let late = late.and_then(Late::differentiable).expect("numbers");
     let (start, velocity) = (SO3::exp(Vector3::new(0.3, -0.2, 0.5)), Vector3::new(0.3, 1.0, 5.0));
     let compiled = Stepper::new(sum, 0.01).expect("a stepper");
@@ -338,13 +338,13 @@ fn a_sum_in_frames() {
     // A sum of such a sum, and the C of its step.
     let twice = Declaration::sum_in_frames(&[declaration, terms[1]]).expect("a sum");
     let values = [numbers(&sum), numbers(&gravity)].concat();
-    let twice =
-        Late::<SO3, Frame, WithEitherKinetic>::of(twice).and_then(|late| late.with_all(&values)).expect("numbers");
+    let twice = Late::<SO3, Frame, WithKinetic>::of(twice).and_then(|late| late.with_all(&values)).expect("numbers");
     let by_hand = sum + gravity;
     let limits = (twice.limit(None, &twice.advected()).l, by_hand.limit(None, &by_hand.advected()).l);
     assert!((limits.0 - limits.1).abs() < 1e-12, "{limits:?}");
     let written = liestep_late::c(declaration).expect("a step in C");
-    assert!(written.contains("spatial[3 + i] = i == 1;"), "{written}");
+    let seen = written.split("static void seen").nth(1).expect("a program");
+    assert!(seen.contains("x3 = in->attitude[3];") && seen.contains("outputs[3] = x3;"), "{written}");
 }
 
 /// The numbers of all derivatives of a step, at a random step.
@@ -389,7 +389,7 @@ fn derivatives_of_steps() {
             assert_eq!(derivatives(&compiled, 5), derivatives(&late, 5), "{}", stringify!($name));
         )+};
     }
-    differentiated! { WithEitherKinetic: RigidBody { J_d } CayleyBody { J } GeodesicBody { J } Vehicle { J k r up } }
+    differentiated! { WithKinetic: RigidBody { J_d } CayleyBody { J } GeodesicBody { J } Vehicle { J k r up } }
     differentiated! { WithoutKinetic:
         Gravity { m g rho up } GravityGradient { GM r J direction } Dipole { moment field } Spring { k length at anchor }
         Rotor { spin } Drag { c J } AirDrag { c air J } MagneticDamping { k field J } Thrust { at thrust } Torque { torque }
@@ -398,14 +398,14 @@ fn derivatives_of_steps() {
         (random!(1, RigidBody { J_d }), random!(2, Gravity { m g rho up }), random!(3, Drag { c J }));
     let sum = body + gravity + drag + gravity;
     let terms = [declared(&body), declared(&gravity), declared(&drag), declared(&gravity)];
-    let late = Declaration::sum(&terms).and_then(Late::<SO3, Seen, WithEitherKinetic>::of);
+    let late = Declaration::sum(&terms).and_then(Late::<SO3, Seen, WithKinetic>::of);
     let late = late.and_then(|late| late.with_all(&numbers(&sum))?.differentiable()).expect("derivatives");
     let (one, other) = (derivatives(&sum, 7), derivatives(&late, 7));
     assert!(
         one.len() == other.len() && one.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-11),
         "{one:?} {other:?}"
     );
-    let plain: Late<_, _, WithEitherKinetic> = Late::like(&random!(1, FreeBody { J_d })).expect("a declaration");
+    let plain: Late<_, _, WithKinetic> = Late::like(&random!(1, FreeBody { J_d })).expect("a declaration");
     assert_eq!(
         Stepper::new(plain.clone(), 0.1).expect("a stepper").linearised().err(),
         Some(SetupError::NoSecondDerivatives)
@@ -444,9 +444,9 @@ fn specialised_programs_are_shorter() {
 #[test]
 fn lanes_have_the_bits_of_single_steps() {
     let top = random!(1, FullTop { J_d m g rho up });
-    let full: Late<SO3, Vector3<f64>, WithEitherKinetic> = Late::like(&top).expect("a declaration");
+    let full: Late<SO3, Vector3<f64>, WithKinetic> = Late::like(&top).expect("a declaration");
     let top = random!(2, FourthOrderTop { J weight rho up });
-    let fourth: Late<SO3, Vector3<f64>, WithEitherKinetic> = Late::like(&top).expect("a declaration");
+    let fourth: Late<SO3, Vector3<f64>, WithKinetic> = Late::like(&top).expect("a declaration");
     // The kicks of a torque are known before a step.
     let both = [RigidBody::<f64>::DECLARATION, Torque::<f64>::DECLARATION].map(|it| Declaration::parse(it).unwrap());
     let values = [numbers(&random!(1, RigidBody { J_d })), numbers(&random!(2, Torque { torque }))].concat();

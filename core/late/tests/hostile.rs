@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use liestep::effects::RigidBody;
 use liestep::groups::SE3;
-use liestep::mechanics::{Inertia, Term as _, WithExpensiveKinetic, WithoutKinetic};
+use liestep::mechanics::{Inertia, Term as _, WithoutKinetic};
 use liestep::{SO3, SetupError, Stepper};
 use liestep_late::{Backend, Declaration, Function, Interpreter, Late, LateError, Operation, Program};
 use nalgebra::{Matrix3, Vector3};
@@ -115,7 +115,6 @@ fn what_does_not_fit_is_told() {
     let text = body(" - h * k * F.trace()");
     says(Late::<SE3>::parse(&text).unwrap_err(), &["SO3"]);
     says(Late::<SO3, (), WithoutKinetic>::parse(&text).unwrap_err(), &["`WithKinetic`"]);
-    says(Late::<SO3, (), WithExpensiveKinetic>::parse(&text).unwrap_err(), &["`WithKinetic`"]);
     let carried =
         "#[lagrangian(group = SO3, advected(w = up), l_d = -h * w.dot(&up))] struct Pull { up: Vector3<f64> }";
     let _ = mistakes(carried);

@@ -5,13 +5,15 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs};
 
-use declarations::{CayleyTop, FullTop, LogTop, SixthOrderTop};
-use liestep::mechanics::Effect;
+use declarations::{CayleyTop, DoublePendulum, Flyer, FullTop, LogTop, SixthOrderTop};
+use liestep::groups::{LieGroup, SE3};
+use liestep::mechanics::{Effect, Regular};
+use liestep::numbers::Entries;
 use liestep::{NonstandardInertia, SO3, Stepper};
+use liestep_derivation::whole::StepRefusal;
 use liestep_late::{Declaration, LateError, c, latex, rust};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Matrix4, UnitQuaternion, Vector3};
 
-const STEPS: u32 = 10_000;
 const STEP: f64 = 0.01;
 
 fn folder(name: &str) -> PathBuf {
@@ -45,16 +47,21 @@ fn list(numbers: impl IntoIterator<Item = f64>) -> String {
 }
 
 /// The output of the compiled program: the bits of momentum and attitude after each hundredth step.
-fn by_c(text: &str, folder: &Path, [parameters, attitude, momentum, velocity]: [String; 4]) -> Option<String> {
+fn by_c(
+    text: &str,
+    folder: &Path,
+    steps: u32,
+    [parameters, attitude, momentum, velocity]: [String; 4],
+) -> Option<String> {
     let main = format!(
         "{text}\n#include <stdio.h>\n#include <string.h>\n#include <stdint.h>\n\
          static void print(const double *numbers, int count) {{\n    for (int i = 0; i < count; i++) {{\n        \
          uint64_t bits;\n        memcpy(&bits, numbers + i, 8);\n        printf(\"%016llx \", (unsigned long long)bits);\n    }}\n}}\n\
          int main(void) {{\n    const double p[] = {parameters}, r[] = {attitude}, m[] = {momentum}, v[] = {velocity};\n    \
          Stepper stepper;\n    State state;\n    if (!liestep_make(&stepper, p, {STEP:?})) return 1;\n    \
-         liestep_start(&stepper, &state, r, m, v);\n    for (int i = 1; i <= {STEPS}; i++) {{\n        \
+         liestep_start(&stepper, &state, r, m, v);\n    for (int i = 1; i <= {steps}; i++) {{\n        \
          if (!liestep_step(&stepper, &state)) return 2;\n        if (i % 100) continue;\n        \
-         print(state.momentum, 3);\n        print(state.attitude, 9);\n        puts(\"\");\n    }}\n    \
+         print(state.momentum, N);\n        print(state.attitude, ENTRIES);\n        puts(\"\");\n    }}\n    \
          return liestep_defect(&state) > 1e-9;\n}}\n"
     );
     fs::write(folder.join("step.c"), main).expect("a file");
@@ -65,51 +72,92 @@ fn by_c(text: &str, folder: &Path, [parameters, attitude, momentum, velocity]: [
     run.status.success().then(|| String::from_utf8(run.stdout).expect("a text"))
 }
 
-#[test]
-fn a_step_in_c_has_the_bits_of_the_library() {
-    if !is_there("cc") {
-        return;
-    }
-    let folder = folder("c");
-    let top = top();
-    let stepper = Stepper::new(top.clone(), STEP).expect("a stepper");
-    let attitude = SO3::exp(Vector3::new(0.3, -0.5, 0.2));
-    let mut state = stepper.start(attitude, Vector3::new(0.7, -1.1, 4.0)).expect("a start");
+fn entries<V: Entries<f64>>(value: &V) -> Vec<f64> {
+    let mut all = Vec::new();
+    value.each(&mut |entry| all.push(entry));
+    all
+}
+
+/// Whether all steps by this C are made, and have the bits of the library's.
+fn has_the_bits_of<E>(effect: &E, attitude: E::Group, velocity: &[f64], steps: u32, text: &str) -> bool
+where
+    E: Regular<Scalar = f64> + Clone,
+{
+    let folder = folder(&parsed(E::DECLARATION).name);
+    let stepper = Stepper::new(effect.clone(), STEP).expect("a stepper");
+    let mut at = velocity.iter();
+    let velocity = Entries::from_entries(&mut || at.next().copied().expect("a component"));
+    let mut state = stepper.start(attitude, velocity).expect("a start");
     let given = [
-        list(liestep_late::numbers(&top)),
-        list(attitude.as_matrix().transpose().iter().copied()),
-        list(state.momentum().iter().copied()),
-        list(stepper.velocity(&state).iter().copied()),
+        list(liestep_late::numbers(effect)),
+        list(entries(&state.attitude().matrix())),
+        list(entries(&state.momentum())),
+        list(entries(&stepper.velocity(&state))),
     ];
-    let text = c(parsed(FullTop::DECLARATION)).expect("a step in C");
-    let found = by_c(&text, &folder, given.clone()).expect("all steps are made");
+    let found = by_c(text, &folder, steps, given);
     let mut expected = String::new();
-    for step in 1..=STEPS {
+    for step in 1..=steps {
         stepper.step(&mut state).expect("a step");
         if step % 100 == 0 {
-            let row_by_row = state.attitude().as_matrix().transpose();
-            for number in state.momentum().iter().chain(row_by_row.iter()) {
+            for number in entries(&state.momentum()).into_iter().chain(entries(&state.attitude().matrix())) {
                 let _ = write!(expected, "{:016x} ", number.to_bits());
             }
             expected.push('\n');
         }
     }
-    assert_eq!(found, expected);
+    fs::remove_dir_all(&folder).expect("the folder is there");
+    found == Some(expected)
+}
+
+#[test]
+fn a_step_in_c_has_the_bits_of_the_library() {
+    if !is_there("cc") {
+        return;
+    }
+    let has_the_bits = |text: &str| {
+        let attitude = SO3::exp(Vector3::new(0.3, -0.5, 0.2));
+        has_the_bits_of(&top(), attitude, &[0.7, -1.1, 4.0], 10_000, text)
+    };
+    let text = c(parsed(FullTop::DECLARATION)).expect("a step in C");
+    assert!(has_the_bits(&text));
     // A single wrong operation is detected.
-    let (before, after) = text.split_once("static void newton_residual").expect("a stage");
-    let wrong = format!("{before}static void newton_residual{}", after.replacen(" - ", " + ", 1));
-    assert_ne!(by_c(&wrong, &folder, given), Some(expected));
-    fs::remove_dir_all(folder).expect("the folder is there");
+    let (before, after) = text.split_once("static void again").expect("a program");
+    assert!(!has_the_bits(&format!("{before}static void again{}", after.replacen(" - ", " + ", 1))));
+}
+
+#[test]
+fn so_has_one_of_two_bodies() {
+    if !is_there("cc") {
+        return;
+    }
+    let attitude = (SO3::exp(Vector3::new(0.3, -0.5, 0.2)), SO3::exp(Vector3::new(-0.2, 0.3, 0.1)));
+    let velocity = [0.5, -0.8, 1.2, -0.3, 0.9, 0.4];
+    let text = c(parsed(DoublePendulum::<f64>::DECLARATION)).expect("a step in C");
+    assert!(has_the_bits_of(&DoublePendulum::asymmetric(), attitude, &velocity, 1_000, &text));
+}
+
+#[test]
+fn so_has_one_of_rigid_motions() {
+    if !is_there("cc") {
+        return;
+    }
+    let J = Matrix4::new(0.3, 0.02, 0.0, 0.05, 0.02, 0.2, 0.01, 0.0, 0.0, 0.01, 0.25, -0.1, 0.05, 0.0, -0.1, 1.5);
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -0.2, 0.1));
+    let attitude = SE3::from_rotation_and_translation(turn, Vector3::new(0.1, 0.2, 0.5));
+    let text = c(parsed(Flyer::DECLARATION)).expect("a step in C");
+    assert!(has_the_bits_of(&Flyer { J }, attitude, &[0.5, -0.8, 1.2, 0.3, 0.2, -0.4], 1_000, &text));
 }
 
 #[test]
 fn what_has_no_step_in_c_is_told() {
-    for text in
-        [SixthOrderTop::DECLARATION, declarations::Flyer::DECLARATION, liestep::effects::Gravity::<f64>::DECLARATION]
-    {
-        assert!(matches!(c(parsed(text)), Err(LateError::C(_))), "{text}");
+    let refused = |text: &str| c(parsed(text)).err();
+    for text in [liestep::effects::Gravity::<f64>::DECLARATION, liestep::effects::Drag::<f64>::DECLARATION] {
+        assert!(matches!(refused(text), Some(LateError::Step(StepRefusal::NoKinetic))), "{text}");
     }
-    assert!(matches!(c(parsed(LogTop::DECLARATION)), Ok(_) | Err(LateError::Function(_))));
+    // Their functions are those of the logarithm.
+    for text in [LogTop::DECLARATION, SixthOrderTop::DECLARATION] {
+        assert!(matches!(refused(text), Some(LateError::Function(_))), "{text}");
+    }
 }
 
 /// Rust text is formatted, and complete.

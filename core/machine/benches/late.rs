@@ -15,7 +15,7 @@ use declarations::{
     Gyrostat, LogTop, Magnet, OrbitingBody, RodElement, Satellite, SixthOrderTop, SuspendedLoad, TetheredPlate,
     TopOnCart, TwoBodies, UnderwaterBody,
 };
-use liestep::mechanics::{Effect, Inertia, KineticPart, Regular, WithExpensiveKinetic, WithKinetic};
+use liestep::mechanics::{Effect, Inertia, Regular, WithKinetic};
 use liestep::motion::{Batch, Batchable, Integrator};
 use liestep::{SO3, StateOf, Stepper};
 use liestep_late::{Backend, Declaration, Interpreter, Late, LateError, Program};
@@ -29,7 +29,7 @@ const STEP: f64 = 0.01;
 const LANES: u32 = 8;
 const EFFORT: Effort = Effort { batch: 1_000, rounds: 200, counted: 10_000 };
 
-type LateTop<K, B> = Late<SO3, Vector3<f64>, K, B>;
+type LateTop<B> = Late<SO3, Vector3<f64>, WithKinetic, B>;
 
 fn main() -> Result<(), Failure> {
     let words = arguments();
@@ -39,8 +39,8 @@ fn main() -> Result<(), Failure> {
     let fourth = FourthOrderTop { J: inertia, weight: 1.5 * 9.81, rho, up };
     let full = FullTop { J_d: inertia.to_nonstandard(), m: 1.5, g: 9.81, rho, up };
     let groups = vec![
-        Group::new("(3.13), any inertia", EFFORT, kernels::<_, WithKinetic>(full)?),
-        Group::new("of the fourth order", EFFORT, kernels::<_, WithExpensiveKinetic>(fourth)?),
+        Group::new("(3.13), any inertia", EFFORT, kernels(full)?),
+        Group::new("of the fourth order", EFFORT, kernels(fourth)?),
     ];
     if words.is_empty() {
         first_steps();
@@ -53,17 +53,12 @@ fn main() -> Result<(), Failure> {
 }
 
 /// The declaration compiled, and read in each way.
-fn kernels<S, K>(scene: S) -> Result<[Kernel; 6], Failure>
+fn kernels<S>(scene: S) -> Result<[Kernel; 6], Failure>
 where
     S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone + 'static,
-    K: KineticPart + 'static,
-    LateTop<K, Machine>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-    LateTop<K, Interpreter>: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-    Stepper<LateTop<K, Interpreter>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Interpreter>>>,
-    Stepper<LateTop<K, Machine>>: Batchable<AutoF64x8> + Integrator<State = StateOf<LateTop<K, Machine>>>,
 {
-    let machine: LateTop<K, Machine> = Late::like(&scene)?;
-    let interpreted: LateTop<K, Interpreter> = Late::like(&scene)?;
+    let machine: LateTop<Machine> = Late::like(&scene)?;
+    let interpreted: LateTop<Interpreter> = Late::like(&scene)?;
     Ok([
         alone("compiled", scene),
         alone("machine code", machine.clone()),
@@ -117,7 +112,7 @@ fn first_steps() {
     let times = (0..20).map(|number| {
         let text = FullTop::DECLARATION.replace("FullTop", &format!("Top{number}"));
         let clock = Instant::now();
-        let late: LateTop<WithKinetic, Machine> = Late::parse(&text).expect("a declaration");
+        let late: LateTop<Machine> = Late::parse(&text).expect("a declaration");
         let inertia = [2.0, 0.0, 0.0, 0.0, 2.5, 0.0, 0.0, 0.0, 3.0];
         let numbers: [(&str, &[f64]); 5] =
             [("J_d", &inertia), ("m", &[1.5]), ("g", &[9.81]), ("rho", &[0.1, 0.0, 0.4]), ("up", &[0.0, 0.0, 1.0])];

@@ -13,7 +13,7 @@ use liestep::effects::{
 };
 use liestep::groups::{CayleyRetraction, LieGroup, Retraction, SE3};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Effect, WithEitherKinetic};
+use liestep::mechanics::{Effect, WithKinetic};
 use liestep::motion::Batch;
 use liestep::numbers::Real;
 use liestep::{SO3, Stepper};
@@ -174,7 +174,7 @@ where
     W: liestep::groups::Advected<G> + liestep_late::Slots,
     CayleyRetraction: Retraction<G>,
 {
-    fn numbered<G, W, B>(text: &str, numbers: &[(&str, &[f64])]) -> Late<G, W, WithEitherKinetic, B>
+    fn numbered<G, W, B>(text: &str, numbers: &[(&str, &[f64])]) -> Late<G, W, WithKinetic, B>
     where
         G: LieGroup<Scalar = f64>,
         W: liestep::groups::Advected<G> + liestep_late::Slots,
@@ -224,7 +224,7 @@ fn steps_are_the_same() {
 #[test]
 fn lanes_have_the_bits_of_single_steps() {
     let both = [RigidBody::<f64>::DECLARATION, Torque::<f64>::DECLARATION].map(|it| Declaration::parse(it).unwrap());
-    let late: Late<SO3, (), WithEitherKinetic, Machine> = Late::of(Declaration::sum(&both).unwrap()).unwrap();
+    let late: Late<SO3, (), WithKinetic, Machine> = Late::of(Declaration::sum(&both).unwrap()).unwrap();
     let late = late.with_all(&[2.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 3.0, 0.0, 0.0, 0.0]).expect("numbers");
     let bodies = std::array::from_fn::<_, 8, _>(|k| {
         let torque = [0.1 * f64::from(u8::try_from(k).unwrap()), -0.2, 0.1];

@@ -8,7 +8,7 @@
 
 use std::time::Instant;
 
-use liestep::mechanics::WithEitherKinetic;
+use liestep::mechanics::WithKinetic;
 use liestep::motion::Integrator as _;
 use liestep::recording::Recorder;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
@@ -34,7 +34,7 @@ struct HeavyTop {
 type Error = Box<dyn std::error::Error>;
 
 /// As machine code, as in Python.
-fn as_text() -> Result<Late<SO3, Vector3<f64>, WithEitherKinetic, Machine>, Error> {
+fn as_text() -> Result<Late<SO3, Vector3<f64>, WithKinetic, Machine>, Error> {
     let late = Late::parse(
         "#[lagrangian(group = SO3, advected(w = up), l_d =
             ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * m * g * w.dot(&(rho + F * rho)))]

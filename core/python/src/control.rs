@@ -4,26 +4,25 @@ use std::cell::RefCell;
 
 use liestep::gradients::Input;
 use liestep::groups::LieGroup as _;
-use liestep::mechanics::WithEitherKinetic;
+use liestep::mechanics::WithKinetic;
 use liestep::motion::OwnStep;
 use liestep::recording::{Column, Sink as _};
 use liestep::{SO3, Stepper};
 use liestep_control::{Control, ControlError, ControlPlan, Cost, Residual, Target, Verdict};
 use liestep_late::{Declaration, LateError};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::ensemble::kept;
+use crate::ensemble::columns;
 use crate::failure::Failure;
-use crate::method::Four;
 use crate::run::listed;
-use crate::scene::Late;
+use crate::scene::{Four, Late};
 use crate::start::Start;
 use crate::table::Columns;
 
 /// One type for all scenes on SO(3).
-type Scene = Late<SO3, Four, WithEitherKinetic>;
+type Scene = Late<SO3, Four, WithKinetic>;
 
 /// From where to where, by what, within what.
 #[derive(FromPyObject)]
@@ -58,13 +57,17 @@ impl Task {
         };
         let scene = scene.with_all(numbers)?.differentiable()?;
         let stepper = Stepper::new(scene, self.step).map_err(|error| Failure::setup(&error))?;
+        let factors = SO3::<f64>::factors();
+        let attitude = |place: &Start| {
+            place.attitude(&factors).map(|entries| SO3::from_matrix_unchecked(Matrix3::from_row_slice(&entries)))
+        };
         let at = |place: &Start| {
-            let state = stepper.start(place.attitude::<SO3>()?, place.velocity::<SO3>()?);
-            state.map_err(|error| Failure::setup(&error))
+            let velocity = Vector3::from_column_slice(place.velocity(&factors)?);
+            stepper.start(attitude(place)?, velocity).map_err(|error| Failure::setup(&error))
         };
         let (goes_anywhere, ends_anyhow) = (self.goal.attitude.is_empty(), self.goal.velocity.is_empty());
         let target = Target {
-            attitude: if goes_anywhere { None } else { Some(self.goal.attitude::<SO3>()?) },
+            attitude: if goes_anywhere { None } else { Some(attitude(&self.goal)?) },
             momentum: if ends_anyhow { None } else { Some(at(&self.goal)?.momentum()) },
         };
         let raised = RefCell::new(None);
@@ -126,7 +129,7 @@ pub(crate) fn plan<'py>(
         states.extend(listed(&plan.stepper.velocity(state)).into_iter().chain(listed(&state.momentum())));
         states.push(plan.stepper.energy(state));
     }
-    dictionary.set_item("table", table(kept::<SO3>(), states)?)?;
+    dictionary.set_item("table", table(columns(&SO3::<f64>::factors()), states)?)?;
     let torques = ["x", "y", "z"].map(|axis| Column { name: format!("torque_{axis}"), unit: "N m".to_owned() });
     dictionary.set_item("inputs", table(torques.into(), plan.inputs.iter().flat_map(Input::scalars).collect())?)?;
     let (verdict, why, certificate) = match plan.verdict {

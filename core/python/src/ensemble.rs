@@ -5,9 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use liestep::groups::LieGroup;
-use liestep::motion::{AnyStepper, Integrator as _};
-use liestep::numbers::Entries as _;
+use liestep::motion::{AnyStepper, Factor, Integrator as _};
 use liestep::recording::Column;
 use liestep_ensemble::{Ensemble, Local, Member, MemberFailure, Progress, Report, Store};
 use pyo3::prelude::*;
@@ -70,16 +68,13 @@ pub(crate) struct Outcome {
 }
 
 /// Runs the members in threads of their own, while this one listens to Ctrl-C and tells of progress.
-pub(crate) fn run_members<G>(
+pub(crate) fn run_members(
     plan: Members,
     start: &Start,
     draws: Draws,
-    make: impl Fn(&dyn Fn(&mut [f64])) -> Result<AnyStepper<G, ()>, Failure> + Send + Sync + 'static,
+    (factors, make): (Vec<Factor>, impl Fn(&dyn Fn(&mut [f64])) -> Result<AnyStepper, Failure> + Send + Sync + 'static),
     h: f64,
-) -> Result<Outcome, Failure>
-where
-    G: LieGroup<Scalar = f64>,
-{
+) -> Result<Outcome, Failure> {
     let (start, turns) = (start.clone(), plan.turns);
     let made = move |member: &Member<'_>| {
         let draw_of = |name: &str, numbers: &mut [f64]| {
@@ -109,27 +104,23 @@ where
         Ok((stepper, state))
     };
     let steps = steps_to(plan.until, h, true)?;
-    let mut ensemble = Ensemble::<AnyStepper<G, ()>>::one_by_one(&plan.name, plan.members, steps, made).seed(plan.seed);
+    let mut ensemble = Ensemble::<AnyStepper>::one_by_one(&plan.name, plan.members, steps, made).seed(plan.seed);
     if let Some(every) = plan.every {
         ensemble = ensemble.every(every.max(1));
     }
     if let Some(chunk) = plan.chunk {
         ensemble = ensemble.chunks_of(chunk.max(1));
     }
-    let columns = kept::<G>();
+    let columns = columns(&factors);
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-    let attitude_numbers = G::named_numbers().len();
+    let entries = factors.iter().map(|factor| factor.kind.columns()).sum();
     ensemble = ensemble.keep_named(&names, move |run, row| {
         let (stepper, state) = (run.stepper, run.state);
-        let (velocity, energy) = stepper.velocity_and_energy(state, None);
-        let (attitude, others) = row[1..].split_at_mut(attitude_numbers);
-        state.attitude().write_numbers(attitude);
-        let mut places = others.iter_mut();
-        let mut write = |number| places.next().into_iter().for_each(|place| *place = number);
-        velocity.each(&mut write);
-        state.momentum().each(&mut write);
-        write(energy);
+        // A recorded row has the distance from the group besides.
+        let (mut attitude, mut whole) = (vec![0.0; entries], vec![0.0; row.len()]);
+        stepper.write(state, &(), &mut attitude, &mut whole);
         row[0] = stepper.time(state);
+        row[1..].iter_mut().zip(whole).for_each(|(place, number)| *place = number);
     });
     let store = Store::folder(&plan.folder).map_err(|error| store_error(&error))?;
     let report = in_threads(&ensemble, &store, &plan)?;
@@ -148,16 +139,11 @@ fn store_error(error: &impl std::fmt::Display) -> Failure {
     Failure::Of("StoreError", error.to_string())
 }
 
-/// The columns of a member, as a run has them.
-pub(crate) fn kept<G: LieGroup<Scalar = f64>>() -> Vec<Column> {
-    let components = G::named_components();
-    let named = |quantity: &'static str, which: usize| {
-        components.iter().map(move |(name, units)| (format!("{quantity}_{name}"), units[which]))
-    };
-    let time = std::iter::once(("t".to_owned(), "s"));
-    let columns = time.chain(G::named_numbers()).chain(named("velocity", 0)).chain(named("momentum", 1));
-    let columns = columns.chain([("energy".to_owned(), "")]);
-    columns.map(|(name, unit)| Column { name, unit: unit.to_owned() }).collect()
+/// The columns of a member: those of a run without the distance from the group.
+pub(crate) fn columns(factors: &[Factor]) -> Vec<Column> {
+    let mut columns = Column::of_motions(factors);
+    columns.pop();
+    columns
 }
 
 /// How often this thread looks for signals.

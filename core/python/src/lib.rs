@@ -16,8 +16,7 @@ mod scene;
 mod start;
 mod table;
 
-use std::sync::Arc;
-
+use liestep::with::Scheme;
 use liestep_ensemble::share_of;
 use liestep_late::{Declaration, Role};
 use pyo3::prelude::*;
@@ -26,7 +25,7 @@ use pyo3::types::PyDict;
 use crate::control::Task;
 use crate::ensemble::{Draws, Members};
 use crate::failure::Failure;
-use crate::method::Method;
+use crate::method::{Names, method};
 use crate::run::{Course, Recorded};
 use crate::start::Start;
 use crate::table::{Table, View};
@@ -87,14 +86,7 @@ fn apart(terms: Vec<Term<'_>>) -> (Vec<&'static Declaration>, Vec<f64>) {
 
 /// The sum of terms with their numbers.
 #[pyclass(frozen, module = "liestep._native")]
-struct Scene(Arc<dyn scene::Scene>);
-
-/// How a scene is stepped: the kind of the method, its scheme, whether sums are compensated, and the most substeps.
-type How = (String, String, bool, u32);
-
-fn method((kind, scheme, is_compensated, substeps): &How) -> Result<Method, Failure> {
-    Method::new(kind, scheme, *is_compensated, *substeps)
-}
+struct Scene(scene::Scene);
 
 #[pymethods]
 impl Scene {
@@ -110,8 +102,8 @@ impl Scene {
     }
 
     #[allow(clippy::needless_pass_by_value)]
-    fn check(&self, h: f64, how: How) -> PyResult<()> {
-        Ok(self.0.check((method(&how)?, h))?)
+    fn check(&self, h: f64, how: Names) -> PyResult<()> {
+        Ok(self.0.stepper((method(&how)?, h)).map(drop)?)
     }
 
     #[allow(clippy::needless_pass_by_value)]
@@ -119,7 +111,7 @@ impl Scene {
         &self,
         py: Python<'py>,
         h: f64,
-        how: How,
+        how: Names,
         start: Start,
         course: Course,
     ) -> PyResult<Bound<'py, PyDict>> {
@@ -130,10 +122,10 @@ impl Scene {
 
     #[allow(clippy::needless_pass_by_value)]
     fn ask<'py>(&self, py: Python<'py>, tolerance: f64, start: Start, course: Course) -> PyResult<Bound<'py, PyDict>> {
-        let (recorded, choice) = py.detach(|| self.0.ask(tolerance, &start, &course))?;
+        let (recorded, choice) = py.detach(|| self.0.accurate(tolerance, &start, &course))?;
         let dictionary = shown(py, recorded)?;
         dictionary.set_item("choice", choice.to_string())?;
-        dictionary.set_item("method", &choice.chosen().name)?;
+        dictionary.set_item("method", choice.chosen().scheme.parts())?;
         dictionary.set_item("step", choice.chosen().step)?;
         dictionary.set_item("error", choice.error)?;
         Ok(dictionary)
@@ -144,7 +136,7 @@ impl Scene {
         &self,
         py: Python<'py>,
         h: f64,
-        how: How,
+        how: Names,
         start: Start,
         draws: Draws,
         plan: Members,
@@ -190,13 +182,13 @@ fn plan<'py>(py: Python<'py>, terms: Vec<Term<'py>>, task: Task) -> PyResult<Bou
 /// The names of all schemes, by the kind of the method.
 #[pyfunction]
 fn schemes() -> Vec<(&'static str, Vec<&'static str>)> {
-    method::schemes().into()
+    Scheme::names().into()
 }
 
 /// The order of a method, which that of a declared step may exceed.
 #[pyfunction]
-fn order(how: How) -> PyResult<u32> {
-    Ok(method(&how)?.order())
+fn order(how: Names) -> PyResult<u32> {
+    Ok(method(&how)?.scheme.order())
 }
 
 /// `1/4` as the share 1 of 4.

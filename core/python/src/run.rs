@@ -3,8 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
 
-use liestep::groups::LieGroup;
-use liestep::motion::{Integrator, Moment};
+use liestep::motion::{AnyMotion, AnyState, AnyStepper, Factor, FactorKind, Integrator, Moment};
 use liestep::recording::{Event, Reason, RecordError, Recorder, Run, RunError};
 use pyo3::prelude::*;
 
@@ -103,10 +102,7 @@ fn short(number: f64) -> f64 {
 }
 
 /// Makes the steps, and rows of all columns that [`Recorder`] has.
-pub(crate) fn record<I>(stepper: &I, mut state: I::State, course: &Course) -> Result<Recorded, Failure>
-where
-    I: Integrator<Group: LieGroup<Scalar = f64>>,
-{
+pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course) -> Result<Recorded, Failure> {
     let is_varied = stepper.length(&state).is_some();
     let steps = steps_to(course.until, stepper.step_size(), !is_varied)?.saturating_sub(state.steps());
     let rows = match &course.times {
@@ -116,7 +112,7 @@ where
     let (signals, mut columns) = (Signals::new(), Columns::new(rows));
     let recorder = RefCell::new(Recorder::new(stepper, &mut columns));
     let last = Cell::new(f64::NAN);
-    let row = |now: &Moment<'_, I>| {
+    let row = |now: &Moment<'_, AnyStepper>| {
         last.set(now.time());
         recorder.borrow_mut().record(now)
     };
@@ -128,7 +124,7 @@ where
         observed = observed.at(times.iter().copied(), row);
     }
     for (watch, table) in course.events.iter().zip(&tables) {
-        observed = observed.event(watch.kind(), watch.function()?, |now| {
+        observed = observed.event(watch.kind(), watch.function(&stepper.layout().factors)?, |now| {
             let (recorder, rising) = &mut *table.borrow_mut();
             rising.push(now.rising().unwrap_or_default());
             recorder.record(now)
@@ -141,7 +137,7 @@ where
     let is_a_row = last.get() >= time;
     let written = if course.every > 0 && !is_a_row { row(&end) } else { Ok(()) };
     let written = written.and_then(|()| recorder.into_inner().finish().map(|_| ()));
-    let finish = |table: RefCell<(Recorder<'_, I, Columns>, Vec<bool>)>| {
+    let finish = |table: RefCell<(Recorder<'_, AnyStepper, Columns>, Vec<bool>)>| {
         let (recorder, rising) = table.into_inner();
         recorder.finish().map(|columns| (columns, rising))
     };
@@ -177,17 +173,14 @@ impl Watch {
     }
 
     /// The function that rises through zero as the quantity rises through its value.
-    fn function<I>(&self) -> Result<impl Fn(&Moment<'_, I>) -> f64 + use<I>, Failure>
-    where
-        I: Integrator<Group: LieGroup<Scalar = f64>>,
-    {
+    fn function(&self, factors: &[Factor]) -> Result<impl Fn(&Moment<'_, AnyStepper>) -> f64 + use<>, Failure> {
         let (value, quantity) = (self.value, self.quantity.as_str());
-        let components = I::Group::named_components();
-        let place = |kind: &str| components.iter().position(|(name, _)| quantity.strip_prefix(kind) == Some(name));
-        let is_rotation = I::Group::named_numbers().first().is_some_and(|(name, _)| name == "q_w");
+        let components = || factors.iter().flat_map(|factor| &factor.components);
+        let place = |kind: &str| components().position(|(name, _)| quantity.strip_prefix(kind) == Some(name));
+        let is_rotation =
+            factors.first().is_some_and(|factor| factor.kind == FactorKind::Rotation) && factors.len() == 1;
         let axis = ["axis_x", "axis_y", "axis_z"].iter().position(|name| *name == quantity).filter(|_| is_rotation);
-        let entries = I::Group::named_numbers();
-        let entry = entries.iter().position(|(name, _)| name == quantity).filter(|_| !is_rotation);
+        let entry = entries(factors).position(|name| name == quantity).filter(|_| !is_rotation);
         let what = match (place("velocity_"), place("momentum_"), axis, entry) {
             (Some(place), ..) => Quantity::Velocity(place),
             (_, Some(place), ..) => Quantity::Momentum(place),
@@ -198,21 +191,21 @@ impl Watch {
             _ if quantity == "speed" => Quantity::Speed,
             _ if quantity == "tilt" && is_rotation => Quantity::Tilt,
             _ => {
-                let own = components.iter().map(|(name, _)| format!("velocity_{name}, momentum_{name}, "));
+                let own = components().map(|(name, _)| format!("velocity_{name}, momentum_{name}, "));
                 let rest = if is_rotation { "axis_x, axis_y, axis_z, tilt, " } else { "the entries g_12 …, " };
                 let known = own.collect::<String>();
                 let message = format!("no event is about `{quantity}`: there are {known}{rest}energy, speed");
                 return Err(Failure::Of("SetupError", message));
             }
         };
-        Ok(move |now: &Moment<'_, I>| match what {
+        Ok(move |now: &Moment<'_, AnyStepper>| match what {
             // By the cosine, which is smooth at the vertical.
-            Quantity::Tilt => value.cos() - entry_of(&now.attitude(), 8),
-            Quantity::Entry(place) => entry_of(&now.attitude(), place) - value,
+            Quantity::Tilt => value.cos() - entry_of(now, 8),
+            Quantity::Entry(place) => entry_of(now, place) - value,
             Quantity::Energy => now.energy() - value,
-            Quantity::Speed => listed(&now.velocity()).iter().map(|part| part * part).sum::<f64>() - value * value,
-            Quantity::Velocity(place) => listed(&now.velocity())[place] - value,
-            Quantity::Momentum(place) => listed(&now.momentum())[place] - value,
+            Quantity::Speed => now.velocity().iter().map(|part| part * part).sum::<f64>() - value * value,
+            Quantity::Velocity(place) => now.velocity()[place] - value,
+            Quantity::Momentum(place) => now.momentum()[place] - value,
         })
     }
 }
@@ -227,8 +220,21 @@ enum Quantity {
     Momentum(usize),
 }
 
-fn entry_of<G: LieGroup<Scalar = f64>>(attitude: &G, place: usize) -> f64 {
-    listed(&attitude.matrix()).get(place).copied().unwrap_or(f64::NAN)
+fn entry_of(motion: &AnyMotion, place: usize) -> f64 {
+    motion.attitude().get(place).copied().unwrap_or(f64::NAN)
+}
+
+/// The name of each entry of an attitude in a table, empty for one that no table has.
+fn entries(factors: &[Factor]) -> impl Iterator<Item = String> {
+    factors.iter().flat_map(|factor| {
+        let (rows, mut names) = (factor.kind.rows(), factor.columns().into_iter().map(|(name, _)| name));
+        let name = move |entry| match factor.kind {
+            FactorKind::Rotation => String::new(),
+            FactorKind::Translation(_) if entry % rows < rows - 1 || entry / rows == rows - 1 => String::new(),
+            _ => names.next().unwrap_or_default(),
+        };
+        (0..rows * rows).map(name).collect::<Vec<_>>()
+    })
 }
 
 /// The numbers of a vector or a matrix.

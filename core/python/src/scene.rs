@@ -2,23 +2,25 @@
 
 use std::sync::Arc;
 
-use liestep::SO3;
-use liestep::Stepper;
-use liestep::accuracy::{Accuracy, Choice};
-use liestep::groups::{
-    Advected, CayleyRetraction, Configuration, Heisenberg, LieGroup, R1, R2, R3, Retraction, SE2, SE3, SL2, SO2, SU2,
-    SeenFrom,
-};
-use liestep::mechanics::{Scene as Stepped, WithEitherKinetic};
+use liestep::accuracy::{Accuracy, Candidate, Choice, choose, displacement, of_any_group};
+use liestep::groups::{Advected, CayleyRetraction, Given, LieGroup, Retraction};
+use liestep::mechanics::{Scene as Stepped, WithKinetic};
 use liestep::motion::AnyStepper;
-use liestep_late::{Declaration, LateError, Role, Slots};
-use nalgebra::{Matrix4, Point2, Point3};
+use liestep::numbers::Entries as _;
+use liestep::with::{Method, Steppable};
+use liestep::{SO3, SetupError, Stepper};
+use liestep_late::{Declaration, LateError, Role, Slots, Whole, WholeComposed, WholeFamily};
+use nalgebra::SVector;
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
 use crate::failure::Failure;
-use crate::method::{Four, Method, Methods, V, WithEnergy};
 use crate::run::{Course, Recorded, record};
 use crate::start::{Start, started};
+
+pub(crate) type V<const N: usize> = SVector<f64, N>;
+/// The advected vectors on SO(3) where there are several, and those beside the energy of a pace.
+pub(crate) type Four = (V<3>, V<3>, V<3>, V<3>);
+type WithEnergy = (Given<f64>, V<3>, V<3>, V<3>);
 
 /// Programs are machine code where the feature asks for it, and else interpreted: the bits are the same.
 #[cfg(feature = "machine")]
@@ -27,114 +29,159 @@ type Backend = liestep_machine::Machine;
 type Backend = liestep_late::Interpreter;
 
 pub(crate) type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
-type Sum<G, W> = Late<G, W, WithEitherKinetic>;
+type Sum<G, W> = Late<G, W, WithKinetic>;
 
-/// What a program that is running has declared.
-pub(crate) trait Scene: Send + Sync {
-    /// Whether there is such a stepper.
-    fn check(&self, method: (Method, f64)) -> Result<(), Failure>;
+/// A declaration whose group and advected parameters are types below, and numbers above.
+pub(crate) trait Steps: Send + Sync {
+    /// The stepper of other numbers of the same declaration, by a method.
+    fn stepper(&self, numbers: &[f64], method: (Method, f64)) -> Result<AnyStepper, Failure>;
 
-    fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<Recorded, Failure>;
-
-    /// Whether a step of `−h` undoes one of `h`, as methods of a higher order ask for.
-    fn is_self_adjoint(&self) -> bool;
-
-    /// By the method and the step that are the cheapest for a tolerance.
-    fn ask(&self, tolerance: f64, start: &Start, course: &Course) -> Result<(Recorded, Choice), Failure>;
-
-    fn members(&self, method: (Method, f64), start: &Start, draws: Draws, plan: Members) -> Result<Outcome, Failure>;
+    /// The stepper by the method and the step that are the cheapest for an accuracy.
+    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<(AnyStepper, Choice), Failure>;
 }
 
-/// The sum of all terms, in one program.
+impl<G, W> Steps for Sum<G, W>
+where
+    G: LieGroup<Scalar = f64> + Steppable<Self>,
+    W: Advected<G> + Slots + Send + Sync + 'static,
+    CayleyRetraction: Retraction<G>,
+    Self: Stepped<Scalar = f64, Group = G, Advected = W> + Send + Sync,
+{
+    fn stepper(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
+        let sum = self.clone().with_all(numbers)?;
+        method.stepper(sum, h).map_err(|error| Failure::setup(&error))
+    }
+
+    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<(AnyStepper, Choice), Failure> {
+        let layout = G::factors();
+        let (attitude, velocity) = (start.attitude(&layout)?, start.velocity(&layout)?);
+        let read = |numbers: &[f64]| numbers.to_vec().into_iter();
+        let (mut entries, mut components) = (read(&attitude), read(velocity));
+        let attitude = G::from_matrix_unchecked(G::Matrix::from_entries(&mut || entries.next().unwrap_or(f64::NAN)));
+        let velocity = G::Vector::from_entries(&mut || components.next().unwrap_or(f64::NAN));
+        let sum = self.clone().with_all(numbers)?;
+        let stepper =
+            Stepper::for_accuracy(sum, accuracy, attitude, velocity).map_err(|error| Failure::setup(&error))?;
+        Ok((stepper.any().clone(), stepper.choice().clone()))
+    }
+}
+
+/// A scene: the sum of all terms in one program, with the numbers of all, term by term.
 #[derive(Clone)]
-struct Declared<G: LieGroup<Scalar = f64>, W> {
-    sum: Sum<G, W>,
-    /// All of them, term by term.
+pub(crate) struct Scene {
+    steps: Arc<dyn Steps>,
+    declaration: &'static Declaration,
     numbers: Vec<f64>,
     has_force: bool,
 }
 
-impl<G: LieGroup<Scalar = f64>, W> Declared<G, W>
-where
-    (G, W): Methods<Sum<G, W>>,
-    Sum<G, W>: Stepped<Scalar = f64, Group = G, Advected = W>,
-{
-    fn stepper(&self, (method, h): (Method, f64)) -> Result<AnyStepper<G, W>, Failure> {
+impl Scene {
+    /// The stepper by a method and a step.
+    pub(crate) fn stepper(&self, (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
+        self.with(&self.numbers, (method, h))
+    }
+
+    fn with(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
         if self.has_force && !method.is_plain() {
             let message = "a scene with a force is made by its own step alone: leave the method out";
             return Err(Failure::Of("SetupError", message.to_owned()));
         }
-        <(G, W)>::stepper(self.sum.clone(), h, method)
-    }
-}
-
-impl<G, W> Scene for Declared<G, W>
-where
-    G: LieGroup<Scalar = f64> + liestep::accuracy::Steppable<Sum<G, W>>,
-    W: Advected<G> + Slots + Send + Sync + 'static,
-    (G, W): Methods<Sum<G, W>>,
-    CayleyRetraction: Retraction<G>,
-    Sum<G, W>: Stepped<Scalar = f64, Group = G, Advected = W> + Send + Sync,
-{
-    fn check(&self, method: (Method, f64)) -> Result<(), Failure> {
-        self.stepper(method).map(drop)
+        self.steps.stepper(numbers, (method, h))
     }
 
-    fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<Recorded, Failure> {
+    /// Whether a step of `−h` undoes one of `h`, as methods of a higher order require.
+    pub(crate) fn is_self_adjoint(&self) -> bool {
+        self.declaration.is_self_adjoint
+    }
+
+    /// The run by a method and a step.
+    pub(crate) fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<Recorded, Failure> {
         let stepper = self.stepper(method)?;
         record(&stepper, started(&stepper, start)?, course)
     }
 
-    fn is_self_adjoint(&self) -> bool {
-        self.sum.declaration().is_self_adjoint
-    }
-
-    fn ask(&self, tolerance: f64, start: &Start, course: &Course) -> Result<(Recorded, Choice), Failure> {
-        let (attitude, velocity) = (start.attitude::<G>()?, start.velocity::<G>()?);
+    /// The run by the method and the step that are the cheapest for a tolerance.
+    pub(crate) fn accurate(
+        &self,
+        tolerance: f64,
+        start: &Start,
+        course: &Course,
+    ) -> Result<(Recorded, Choice), Failure> {
         let accuracy = Accuracy { tolerance, horizon: course.until };
-        let stepper = Stepper::for_accuracy(self.sum.clone(), accuracy, attitude, velocity);
-        let stepper = stepper.map_err(|error| Failure::setup(&error))?;
-        let recorded = record(&*stepper, stepper.start(), course)?;
-        Ok((recorded, stepper.choice().clone()))
+        let (stepper, choice) = self.steps.accurate(&self.numbers, accuracy, start)?;
+        Ok((record(&stepper, started(&stepper, start)?, course)?, choice))
     }
 
-    fn members(&self, method: (Method, f64), start: &Start, draws: Draws, plan: Members) -> Result<Outcome, Failure> {
-        let (own, (method, h)) = (self.clone(), method);
-        if own.sum.declaration().energy.is_some() || method.varies() {
+    /// The members of an ensemble.
+    pub(crate) fn members(
+        &self,
+        (method, h): (Method, f64),
+        start: &Start,
+        draws: Draws,
+        plan: Members,
+    ) -> Result<Outcome, Failure> {
+        if self.declaration.energy.is_some() || method.varies() {
             let message =
                 "members make the same number of steps, and those of a pace or a density end at different times";
             return Err(Failure::Of("SetupError", message.to_owned()));
         }
-        // The first member says what is wrong with all of them.
-        self.run((method, h), start, &Course { until: 0.0, every: 1, times: None, events: Vec::new() })?;
+        // The first member reports a mistake of all.
+        let stepper = self.stepper((method, h))?;
+        started(&stepper, start)?;
+        let own = self.clone();
         let make = move |draw: &dyn Fn(&mut [f64])| {
             let mut numbers = own.numbers.clone();
             draw(&mut numbers);
-            let sum = own.sum.clone().with_all(&numbers)?;
-            Declared { sum, ..own.clone() }.stepper((method, h)).map(AnyStepper::hiding_advected)
+            own.with(&numbers, (method, h))
         };
-        run_members(plan, start, draws, make, h)
+        run_members(plan, start, draws, (stepper.layout().factors.clone(), make), h)
     }
 }
 
-/// The sum of these terms, if the types fit it.
-fn declared<G, W>(sum: &'static Declaration, numbers: &[f64], has_force: bool) -> Result<Arc<dyn Scene>, LateError>
+/// A declaration on any group, whose step is data.
+impl Steps for Arc<WholeFamily<Backend>> {
+    fn stepper(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
+        whole(self, numbers, method, h).map_err(|error| Failure::setup(&error))
+    }
+
+    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<(AnyStepper, Choice), Failure> {
+        let factors = &self.layout().factors;
+        let (attitude, velocity) = (start.attitude(factors)?, start.velocity(factors)?);
+        let candidate = |scheme| {
+            let (family, numbers) = (Self::clone(self), numbers.to_vec());
+            Candidate { scheme, make: Box::new(move |h| whole(&family, &numbers, Method::from(scheme), h)) }
+        };
+        let candidates: Vec<_> = of_any_group(self.declaration().is_self_adjoint).map(candidate).collect();
+        let beside = self.displaced(&attitude, &displacement(velocity.len()));
+        choose(&candidates, accuracy, [&attitude, &beside], velocity).map_err(|error| Failure::setup(&error))
+    }
+}
+
+/// The stepper of a step as data by a method that every group has.
+fn whole(
+    family: &Arc<WholeFamily<Backend>>,
+    numbers: &[f64],
+    method: Method,
+    h: f64,
+) -> Result<AnyStepper, SetupError> {
+    Ok(match method.composition()? {
+        None => AnyStepper::new(Whole::new(family, numbers, h)?),
+        Some(scheme) => AnyStepper::new(WholeComposed::new(family, numbers, h, scheme)?),
+    })
+}
+
+/// The steps of a declaration, if its group and its advected parameters are these types.
+fn typed<G, W>(sum: &'static Declaration, numbers: &[f64]) -> Result<Arc<dyn Steps>, LateError>
 where
     G: LieGroup<Scalar = f64>,
     W: Advected<G> + Slots + 'static,
-    Declared<G, W>: Scene + 'static,
+    Sum<G, W>: Steps + 'static,
 {
-    let sum = Sum::<G, W>::of(sum)?.with_all(numbers)?;
-    Ok(Arc::new(Declared { sum, numbers: numbers.to_vec(), has_force }))
+    Ok(Arc::new(Sum::<G, W>::of(sum)?.with_all(numbers)?))
 }
 
-/// A vector as the first body sees it, and as the second.
-type First = SeenFrom<0, V<3>>;
-type Second = SeenFrom<1, V<3>>;
-type PlaceOfSecond = Configuration<1, Matrix4<f64>>;
-
 /// The scene of the sum of these terms, with the numbers of all.
-pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<Arc<dyn Scene>, Failure> {
+pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<Scene, Failure> {
     if terms.len() > 1 && terms.iter().any(|term| term.energy.is_some()) {
         return Err(Failure::setup(&LateError::Pace));
     }
@@ -146,9 +193,11 @@ pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<A
     let has_force = terms.iter().any(|term| term.role == Role::Force);
     macro_rules! first_that_fits {
         ($sum:expr; $($group:ty: $($carried:ty),+;)+) => {$($(
-            match declared::<$group, $carried>($sum, numbers, has_force) {
+            match typed::<$group, $carried>($sum, numbers) {
                 Err(LateError::Group { .. } | LateError::Advected { .. }) => {}
-                other => return other.map_err(Failure::from),
+                steps => {
+                    return Ok(Scene { steps: steps?, declaration: $sum, numbers: numbers.to_vec(), has_force });
+                }
             }
         )+)+};
     }
@@ -158,22 +207,8 @@ pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<A
         first_that_fits! {
             sum;
             SO3: V<3>, Four, WithEnergy;
-            SO2: (V<2>, V<2>);
-            SE2: (V<3>, V<3>, V<3>), Point2<f64>;
-            SE3: (V<4>, V<4>, V<4>, V<4>), Point3<f64>;
-            SU2: ();
-            SL2: (V<2>, V<2>);
-            R1: (V<2>, V<2>);
-            R2: (V<3>, V<3>, V<3>);
-            R3: (V<4>, V<4>, V<4>, V<4>);
-            Heisenberg: ();
-            (SO3, SO3): (First, Second, First, Second, First, Second);
-            (SO3, R3): PlaceOfSecond, (First, PlaceOfSecond, First, First);
         }
     }
-    let known = "on SO3, SO2, SL2, R1, R2 and R3 vectors are advected, on SE2 and SE3 vectors or one point, on (SO3, SO3) \
-                 vectors seen from each, on (SO3, R3) vectors seen from the body and where the other is";
-    let (group, carried) = (sum.group(), sum.carried.len());
-    let message = format!("{group} with these {carried} advected parameters can't be stepped here: {known}");
-    Err(Failure::Of("DeclarationError", message))
+    let family = WholeFamily::<Backend>::of(sum)?;
+    Ok(Scene { steps: Arc::new(family), declaration: sum, numbers: numbers.to_vec(), has_force })
 }

@@ -1,10 +1,7 @@
 //! The start of a motion, by numbers that Python gives.
 
-use liestep::SetupError;
-use liestep::groups::LieGroup;
-use liestep::motion::{AnyState, AnyStepper};
-use liestep::numbers::Entries;
-use nalgebra::{Quaternion, UnitQuaternion};
+use liestep::motion::{AnyState, AnyStepper, Factor, FactorKind};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
 use pyo3::prelude::*;
 
 use crate::failure::Failure;
@@ -18,31 +15,29 @@ pub(crate) struct Start {
 }
 
 /// The state at a start.
-pub(crate) fn started<G: LieGroup<Scalar = f64>, W>(
-    stepper: &AnyStepper<G, W>,
-    start: &Start,
-) -> Result<AnyState<G, W>, Failure> {
-    let setup = |error: SetupError| Failure::setup(&error);
-    stepper.start(start.attitude::<G>()?, start.velocity::<G>()?).map_err(setup)
+pub(crate) fn started(stepper: &AnyStepper, start: &Start) -> Result<AnyState, Failure> {
+    let factors = &stepper.layout().factors;
+    let state = stepper.start(&start.attitude(factors)?, start.velocity(factors)?);
+    state.map_err(|error| Failure::setup(&error))
 }
 
-/// More is no rounding of an element of a group.
-const DEFECT: f64 = 1e-6;
-
 impl Start {
-    pub(crate) fn velocity<G: LieGroup<Scalar = f64>>(&self) -> Result<G::Vector, Failure> {
-        if self.velocity.len() != G::DIMENSION {
-            let (expected, found) = (G::DIMENSION, self.velocity.len());
-            return Err(Failure::Of("SetupError", format!("a velocity has {expected} components here, not {found}")));
+    /// The components of the velocity.
+    pub(crate) fn velocity(&self, factors: &[Factor]) -> Result<&[f64], Failure> {
+        let expected: usize = factors.iter().map(|factor| factor.components.len()).sum();
+        let found = self.velocity.len();
+        if found == expected {
+            return Ok(&self.velocity);
         }
-        let mut numbers = self.velocity.iter().copied();
-        Ok(G::Vector::from_entries(&mut || numbers.next().unwrap_or(f64::NAN)))
+        Err(Failure::Of("SetupError", format!("a velocity has {expected} components here, not {found}")))
     }
 
-    pub(crate) fn attitude<G: LieGroup<Scalar = f64>>(&self) -> Result<G, Failure> {
+    /// The entries of the attitude, the identity by default.
+    pub(crate) fn attitude(&self, factors: &[Factor]) -> Result<Vec<f64>, Failure> {
         let wrong = |message: String| Err(Failure::Of("SetupError", message));
         if self.attitude.is_empty() {
-            return Ok(G::identity());
+            let identity = |rows: usize| (0..rows * rows).map(move |at| f64::from(u8::from(at / rows == at % rows)));
+            return Ok(factors.iter().flat_map(|factor| identity(factor.kind.rows())).collect());
         }
         if self.is_quaternion {
             let [w, x, y, z] = self.attitude[..] else {
@@ -52,26 +47,26 @@ impl Start {
             let Some(unit) = unit.filter(|unit| unit.coords.iter().all(|part| part.is_finite())) else {
                 return wrong("a quaternion isn't zero, and is finite".to_owned());
             };
-            let rotation = G::from_rotation(unit.to_rotation_matrix().into_inner());
-            return rotation
-                .map_or_else(|| wrong("a quaternion is an attitude on SO3: give a matrix here".to_owned()), Ok);
+            if !matches!(factors, [Factor { kind: FactorKind::Rotation, .. }]) {
+                return wrong("a quaternion is an attitude on SO3: give a matrix here".to_owned());
+            }
+            // Row by row, unlike nalgebra's own order.
+            return Ok(unit.to_rotation_matrix().into_inner().transpose().as_slice().to_vec());
         }
-        let mut entries = 0;
-        G::identity().matrix().each(&mut |_| entries += 1);
+        let entries: usize = factors.iter().map(|factor| factor.kind.rows() * factor.kind.rows()).sum();
         if self.attitude.len() != entries {
             let found = self.attitude.len();
             return wrong(format!("an attitude has {entries} entries here, and {found} were given"));
         }
-        let mut numbers = self.attitude.iter().copied();
-        let matrix = G::Matrix::from_entries(&mut || numbers.next().unwrap_or(f64::NAN));
-        let element = G::from_matrix_unchecked(matrix);
-        let defect = element.defect();
-        // A reflection satisfies the relation, too. Rotations stand first in a product.
-        let rotations = G::named_numbers().iter().filter(|(name, _)| name.starts_with("q_w")).count();
-        let turns = |entries: &[f64]| nalgebra::Matrix3::from_row_slice(entries).determinant() > 0.0;
-        if defect < DEFECT && self.attitude.chunks_exact(9).take(rotations).all(turns) {
-            return Ok(element);
+        let mut first = 0;
+        for factor in factors {
+            let own = &self.attitude[first..first + factor.kind.rows() * factor.kind.rows()];
+            first += own.len();
+            // A reflection satisfies the relation of rotations, too.
+            if factor.kind == FactorKind::Rotation && Matrix3::from_row_slice(own).determinant() <= 0.0 {
+                return wrong("the attitude isn't in the group: it is a reflection".to_owned());
+            }
         }
-        wrong(format!("the attitude isn't in the group: its relation is violated by {defect:e}, or it is a reflection"))
+        Ok(self.attitude.clone())
     }
 }

@@ -1,8 +1,8 @@
 //! Runs of an integrator with ever shorter steps, and their errors.
 
 use liestep::accuracy::End;
-use liestep::groups::LieGroup;
-use liestep::motion::Integrator;
+use liestep::groups::{Advected, LieGroup};
+use liestep::motion::{Integrator, Motion};
 use liestep::{SetupError, StepError};
 use thiserror::Error;
 
@@ -83,7 +83,12 @@ pub(crate) struct Ready<I: Integrator> {
     start: I::State,
 }
 
-impl<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>> Ready<I> {
+impl<
+    G: LieGroup<Scalar = f64>,
+    A: Advected<G>,
+    I: Integrator<Scalar = f64, Motion = Motion<G, A>, Velocity = G::Vector>,
+> Ready<I>
+{
     /// A run of this number of equal steps up to a time.
     #[allow(clippy::cast_precision_loss)] // no run has 2⁵³ steps
     pub(crate) fn new(
@@ -131,7 +136,11 @@ impl<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>> Ready<I> {
 
 /// The numbers of steps, the fewest first, and the reference, by a run of the most steps if none is known.
 #[allow(clippy::type_complexity)] // two things, each named above
-pub(crate) fn plan<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
+pub(crate) fn plan<
+    G: LieGroup<Scalar = f64>,
+    A: Advected<G>,
+    I: Integrator<Scalar = f64, Motion = Motion<G, A>, Velocity = G::Vector>,
+>(
     family: &mut impl FnMut(f64) -> Result<(I, I::State), SetupError>,
     time: f64,
     counts: impl IntoIterator<Item = u64>,
@@ -167,7 +176,11 @@ pub(crate) fn plan<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
 /// # Examples
 ///
 /// The orders of three methods are measured on [the page of this package](crate).
-pub fn convergence<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
+pub fn convergence<
+    G: LieGroup<Scalar = f64>,
+    A: Advected<G>,
+    I: Integrator<Scalar = f64, Motion = Motion<G, A>, Velocity = G::Vector>,
+>(
     mut family: impl FnMut(f64) -> Result<(I, I::State), SetupError>,
     time: f64,
     counts: impl IntoIterator<Item = u64>,

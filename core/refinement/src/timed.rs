@@ -4,8 +4,8 @@ use std::time::{Duration, Instant};
 
 use liestep::SetupError;
 use liestep::accuracy::End;
-use liestep::groups::LieGroup;
-use liestep::motion::Integrator;
+use liestep::groups::{Advected, LieGroup};
+use liestep::motion::{Integrator, Motion};
 
 use crate::runs::{Ready, Reference, RefinementError, plan};
 use crate::table::{Measurement, Refinement};
@@ -182,7 +182,11 @@ impl Refinement {
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn work_precision<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
+pub fn work_precision<
+    G: LieGroup<Scalar = f64>,
+    A: Advected<G>,
+    I: Integrator<Scalar = f64, Motion = Motion<G, A>, Velocity = G::Vector>,
+>(
     mut family: impl FnMut(f64) -> Result<(I, I::State), SetupError>,
     time: f64,
     counts: impl IntoIterator<Item = u64>,
@@ -218,7 +222,11 @@ pub fn work_precision<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
 }
 
 /// A run of this number of steps, with its time, s.
-fn measured<G: LieGroup<Scalar = f64>, I: Integrator<Group = G>>(
+fn measured<
+    G: LieGroup<Scalar = f64>,
+    A: Advected<G>,
+    I: Integrator<Scalar = f64, Motion = Motion<G, A>, Velocity = G::Vector>,
+>(
     family: &mut impl FnMut(f64) -> Result<(I, I::State), SetupError>,
     (time, steps): (f64, u64),
     exact: &End<G>,

@@ -1,17 +1,18 @@
 //! The chosen method, and the alternatives.
 
 use alloc::format;
-use alloc::string::String;
+use alloc::string::ToString as _;
 use alloc::vec::Vec;
 use core::fmt;
 
 use super::question::Accuracy;
+use crate::with::Scheme;
 
 /// A method for an accuracy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Offer {
-    /// Name of the method in tables.
-    pub name: String,
+    /// The scheme of the method.
+    pub scheme: Scheme,
     /// Order of the method. Errors may fall faster if a small potential is split off.
     pub order: u32,
     /// Approximate step that the method needs, s; an upper bound if [`is_bound`](Self::is_bound).
@@ -81,14 +82,15 @@ impl fmt::Display for Choice {
         writeln!(
             f,
             "{tolerance:.0e} at t = {horizon} s: {}, {} steps of {:.4e} s",
-            chosen.name, self.steps, chosen.step
+            chosen.scheme, self.steps, chosen.step
         )?;
         writeln!(f, "error {:.1e}; its trials cost {:.1} runs", self.error, self.trials)?;
         let [rougher, finer] = self.nearby;
         writeln!(f, "{:.0e} would cost {rougher:.2}, {:.0e} {finer:.2}", 10.0 * tolerance, 0.1 * tolerance)?;
-        let width = self.offers.iter().map(|offer| offer.name.chars().count()).max().unwrap_or(0);
+        let width = self.offers.iter().map(|offer| offer.scheme.to_string().chars().count()).max().unwrap_or(0);
         writeln!(f, "{:<width$}  order    step, s      cost", "method")?;
-        for Offer { name, order, step, cost, is_bound } in &self.offers {
+        for Offer { scheme, order, step, cost, is_bound } in &self.offers {
+            let name = scheme.to_string();
             let (least, most) = if *is_bound { ("≥", "<") } else { ("", "") };
             let (step, cost) = (format!("{most}{step:.2e}"), format!("{least}{cost:.2}"));
             writeln!(f, "{name:<width$}  {order:>5}  {step:>9}  {cost:>8}")?;

@@ -1,11 +1,11 @@
 //! Runs of one method with ever shorter steps, from which the number of steps for an error is estimated.
 
+use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use super::error::AccuracyError;
-use super::methods::Method;
-use super::question::{End, Start, Trials};
-use crate::groups::{Advected, LieGroup};
+use super::methods::Candidate;
+use super::question::{EndNumbers, Start, Trials};
 use crate::motion::{Cost, Integrator as _};
 
 roots!();
@@ -15,20 +15,23 @@ pub(super) const LARGEST_ERROR: f64 = 0.05;
 /// Excess of the power of an error's fall over the order, at most. It occurs if the potential is small.
 const BEYOND_THE_ORDER: f64 = 4.0;
 
+/// The cost of a method that doesn't know its own.
+pub(super) const UNKNOWN: Cost = Cost { step: 1e3, iteration: 0.0, fewest: 0, once: 0.0 };
+
 /// A run to the horizon with `steps` steps.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Run<G: LieGroup> {
+#[derive(Clone, Debug)]
+pub(super) struct Run {
     pub(super) steps: f64,
     /// Operations of a step.
     a_step: f64,
     /// Operations of the run.
     pub(super) cost: f64,
     /// The end, or none if the step is invalid, or one had no solution.
-    pub(super) end: Option<End<G>>,
+    pub(super) end: Option<Rc<EndNumbers>>,
 }
 
 /// The end of a fine run, and its estimated error.
-pub(super) type Reference<G> = (End<G>, f64);
+pub(super) type Reference = (Rc<EndNumbers>, f64);
 
 /// An error at the horizon.
 #[derive(Clone, Copy, Debug)]
@@ -39,18 +42,18 @@ struct Point {
 }
 
 /// The runs of a method to one horizon.
-pub(super) struct Ladder<'a, G: LieGroup, A> {
-    pub(super) method: &'a Method<G, A>,
-    start: Start<G>,
+pub(super) struct Ladder<'a> {
+    pub(super) method: &'a Candidate,
+    start: Start,
     cost: Cost,
     /// The runs, sorted by their numbers of steps.
-    pub(super) runs: Vec<Run<G>>,
+    pub(super) runs: Vec<Run>,
     /// The error of the last run, if it failed.
     pub(super) failure: Option<AccuracyError>,
 }
 
-impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
-    pub(super) fn new(method: &'a Method<G, A>, cost: Cost, start: Start<G>) -> Self {
+impl<'a> Ladder<'a> {
+    pub(super) fn new(method: &'a Candidate, cost: Cost, start: Start) -> Self {
         Self { method, start, cost, runs: Vec::new(), failure: None }
     }
 
@@ -60,10 +63,10 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
     }
 
     pub(super) fn order(&self) -> f64 {
-        f64::from(self.method.order)
+        f64::from(self.method.scheme.order())
     }
 
-    pub(super) fn finest(&self) -> Option<&Run<G>> {
+    pub(super) fn finest(&self) -> Option<&Run> {
         self.runs.last()
     }
 
@@ -77,33 +80,33 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
     }
 
     /// Makes and stores a run of `steps` steps from the start.
-    pub(super) fn run(&mut self, steps: f64, trials: &mut Trials) -> Run<G> {
+    pub(super) fn run(&mut self, steps: f64, trials: &mut Trials) -> Run {
         let (run, failure) = self.made(&self.start, steps, trials);
-        self.runs.insert(self.runs.partition_point(|other| other.steps < steps), run);
+        self.runs.insert(self.runs.partition_point(|other| other.steps < steps), run.clone());
         self.failure = failure;
         run
     }
 
-    fn apart(&self, end: &End<G>, exact: &End<G>) -> f64 {
+    fn apart(&self, end: &EndNumbers, exact: &EndNumbers) -> f64 {
         end.error(exact, &self.start.velocity, self.start.horizon)
     }
 
     /// Distance of a run's end from that of a run whose start differs by some roundings.
-    pub(super) fn rounding(&self, run: &Run<G>, trials: &mut Trials) -> f64 {
+    pub(super) fn rounding(&self, run: &Run, trials: &mut Trials) -> f64 {
         let nearby = self.made(&self.start.nearby(), run.steps, trials).0;
-        nearby.end.zip(run.end).map_or(f64::INFINITY, |(nearby, end)| self.apart(&nearby, &end))
+        nearby.end.as_ref().zip(run.end.as_ref()).map_or(f64::INFINITY, |(nearby, end)| self.apart(nearby, end))
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number, far below the largest
-    fn made(&self, start: &Start<G>, steps: f64, trials: &mut Trials) -> (Run<G>, Option<AccuracyError>) {
+    fn made(&self, start: &Start, steps: f64, trials: &mut Trials) -> (Run, Option<AccuracyError>) {
         let run = || -> Result<_, AccuracyError> {
             let stepper = (self.method.make)(start.horizon / steps)?;
-            let mut state = stepper.start(start.attitude, start.velocity)?;
+            let mut state = stepper.start(&start.attitude, &start.velocity)?;
             let iterations = stepper.attempt(&mut state, steps as u64).map_err(AccuracyError::Step)?;
-            let cost = stepper.cost().of_run(steps as u64, iterations);
-            let end = End { attitude: state.attitude(), velocity: stepper.velocity(&state) };
+            let cost = stepper.cost().unwrap_or(UNKNOWN).of_run(steps as u64, iterations);
+            let end = EndNumbers { attitude: state.attitude().into(), velocity: stepper.velocity(&state) };
             let a_step = (cost - self.cost.once) / steps;
-            Ok(Run { steps, a_step, cost, end: Some(end).filter(End::is_finite) })
+            Ok(Run { steps, a_step, cost, end: Some(end).filter(EndNumbers::is_finite).map(Rc::new) })
         };
         let failed =
             |failure| (Run { steps, a_step: self.cost.least(), cost: self.least(steps), end: None }, Some(failure));
@@ -115,14 +118,14 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
     }
 
     /// The error of a run against a reference, or that of the reference if it is larger.
-    pub(super) fn error(&self, run: &Run<G>, (exact, left): &Reference<G>) -> Option<f64> {
-        run.end.map(|end| self.apart(&end, exact).max(*left).max(f64::EPSILON))
+    pub(super) fn error(&self, run: &Run, (exact, left): &Reference) -> Option<f64> {
+        run.end.as_ref().map(|end| self.apart(end, exact).max(*left).max(f64::EPSILON))
     }
 
     /// The errors against a reference, from the first that is small enough for a power law on; without a reference, the
     /// differences to the finest run.
-    fn points(&self, reference: Option<&Reference<G>>) -> Vec<Point> {
-        let own = self.finest().and_then(|finest| Some((finest.end?, 0.0)));
+    fn points(&self, reference: Option<&Reference>) -> Vec<Point> {
+        let own = self.finest().and_then(|finest| Some((finest.end.clone()?, 0.0)));
         let (Some(exact), measured) = (match reference {
             Some(_) => (reference, &self.runs[..]),
             None => (own.as_ref(), &self.runs[..self.runs.len().saturating_sub(1)]),
@@ -148,7 +151,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
     }
 
     /// Number of steps for an error, and the operations of one, if any run has a small enough error.
-    pub(super) fn takes(&self, reference: &Reference<G>, error: f64) -> Option<(f64, f64)> {
+    pub(super) fn takes(&self, reference: &Reference, error: f64) -> Option<(f64, f64)> {
         let (points, most) = (self.points(Some(reference)), self.order() + BEYOND_THE_ORDER);
         let last = points.last()?;
         let by_power = |point: &Point, order: f64| point.steps * (point.error / error).powf(order.recip());
@@ -172,7 +175,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Ladder<'a, G, A> {
     }
 
     /// The error of a run with `steps` steps, extrapolated from the nearest run.
-    pub(super) fn error_at(&self, reference: &Reference<G>, steps: f64) -> Option<f64> {
+    pub(super) fn error_at(&self, reference: &Reference, steps: f64) -> Option<f64> {
         let points = self.points(Some(reference));
         let away = |point: &Point| (point.steps / steps).ln().abs();
         let near = points.iter().min_by(|a, b| away(a).total_cmp(&away(b)))?;

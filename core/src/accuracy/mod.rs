@@ -25,9 +25,10 @@ mod search;
 
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
-pub use methods::{Methods, Steppable};
+pub use methods::{Candidate, of_any_group};
 pub use question::{Accuracy, End, Trials};
 
+use alloc::vec::Vec;
 use core::ops::Deref;
 
 use question::Start;
@@ -35,7 +36,8 @@ use question::Start;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scene, Vector};
-use crate::motion::{AnyState, AnyStepper, Integrator as _, Stepper};
+use crate::motion::{AnyStepper, GroupState, GroupStepper, Integrator as _, Stepper};
+use crate::with::{Method, Steppable};
 
 impl<S: Effect> Stepper<S> {
     /// The cheapest method for an accuracy, with the longest sufficient step for the motion from this attitude (body to
@@ -83,39 +85,72 @@ impl<S: Effect> Stepper<S> {
         S: Scene<Scalar = f64>,
         Group<S>: Steppable<S>,
     {
-        let Accuracy { tolerance, horizon } = accuracy;
-        if !(tolerance > 0.0 && tolerance <= ladder::LARGEST_ERROR) {
-            return Err(AccuracyError::Tolerance { tolerance });
-        }
-        if !(horizon > 0.0 && horizon.is_finite()) {
-            return Err(AccuracyError::Horizon { horizon });
-        }
+        let (Accuracy { horizon, .. }, attitude) = (accuracy, attitude.into());
         if scene.with_energy(&scene.advected(), 0.0).is_some() {
             let cause = "has a time of its own, whose steps are those of `Stepper::new(…)?.paced()`";
             return Err(SetupError::Parameter { field: "pace", cause }.into());
         }
-        let (methods, start) = (Methods::of(&scene), Start { attitude: attitude.into(), velocity, horizon });
-        let choice = search::search(&methods.0, accuracy, start)?;
-        let stepper = (methods.0[choice.chosen].make)(choice.chosen().step)?;
-        let start = stepper.start(start.attitude, start.velocity)?;
+        let (candidates, start) = (methods::candidates(&scene), Start::new(&attitude, &velocity, horizon));
+        let choice = checked(&candidates, accuracy, &start)?;
+        let chosen = choice.chosen();
+        let stepper = Method::from(chosen.scheme).stepper(scene, chosen.step)?.on_group();
+        let stepper = stepper.ok_or(SetupError::Method { cause: "has other states; take another method" })?;
+        let start = stepper.start(attitude, velocity)?;
         Ok(AccurateStepper { stepper, start, choice })
     }
 }
 
+/// The choice among these, after a check of the request.
+fn checked(candidates: &[Candidate], accuracy: Accuracy, start: &Start) -> Result<Choice, AccuracyError> {
+    let Accuracy { tolerance, horizon } = accuracy;
+    if !(tolerance > 0.0 && tolerance <= ladder::LARGEST_ERROR) {
+        return Err(AccuracyError::Tolerance { tolerance });
+    }
+    if !(horizon > 0.0 && horizon.is_finite()) {
+        return Err(AccuracyError::Horizon { horizon });
+    }
+    search::search(candidates, accuracy, start)
+}
+
+/// The cheapest of these steppers for an accuracy, as by [`Stepper::for_accuracy`], for states that are numbers.
+///
+/// `beside` is the attitude displaced by [`displacement`], by which the growth of rounding errors is measured.
+///
+/// # Errors
+///
+/// As there.
+pub fn choose(
+    candidates: &[Candidate],
+    accuracy: Accuracy,
+    [attitude, beside]: [&[f64]; 2],
+    velocity: &[f64],
+) -> Result<(AnyStepper, Choice), AccuracyError> {
+    let start = Start::of_numbers([attitude, beside], velocity, accuracy.horizon);
+    let choice = checked(candidates, accuracy, &start)?;
+    let stepper = (candidates[choice.chosen].make)(choice.chosen().step)?;
+    Ok((stepper, choice))
+}
+
+/// A displacement by some roundings, in all directions of an algebra with this many components.
+#[must_use]
+pub fn displacement(components: usize) -> Vec<f64> {
+    question::displacement(components)
+}
+
 /// A stepper chosen for an accuracy by [`Stepper::for_accuracy`].
 ///
-/// The stepper has the steps, times, velocities and energies of the [`AnyStepper`] inside.
+/// The stepper has the steps, times, velocities and energies of the [`GroupStepper`] inside.
 #[derive(Debug)]
 pub struct AccurateStepper<G: LieGroup, A> {
-    stepper: AnyStepper<G, A>,
-    start: AnyState<G, A>,
+    stepper: GroupStepper<G, A>,
+    start: GroupState<G, A>,
     choice: Choice,
 }
 
-impl<G: LieGroup, A: Advected<G>> AccurateStepper<G, A> {
+impl<G: LieGroup<Scalar = f64>, A: Advected<G>> AccurateStepper<G, A> {
     /// The start of the motion for which the accuracy was requested.
     #[must_use]
-    pub fn start(&self) -> AnyState<G, A> {
+    pub fn start(&self) -> GroupState<G, A> {
         self.start.clone()
     }
 
@@ -125,7 +160,7 @@ impl<G: LieGroup, A: Advected<G>> AccurateStepper<G, A> {
     /// # Errors
     ///
     /// [`StepError`] of the method; none for the motion from [`start`](Self::start).
-    pub fn run(&self, state: &mut AnyState<G, A>) -> Result<(), StepError> {
+    pub fn run(&self, state: &mut GroupState<G, A>) -> Result<(), StepError> {
         self.stepper.run(state, self.choice.steps.saturating_sub(state.steps())).map(|_| ())
     }
 
@@ -137,9 +172,9 @@ impl<G: LieGroup, A: Advected<G>> AccurateStepper<G, A> {
 }
 
 impl<G: LieGroup, A> Deref for AccurateStepper<G, A> {
-    type Target = AnyStepper<G, A>;
+    type Target = GroupStepper<G, A>;
 
-    fn deref(&self) -> &AnyStepper<G, A> {
+    fn deref(&self) -> &GroupStepper<G, A> {
         &self.stepper
     }
 }

@@ -1,5 +1,7 @@
 //! The requested accuracy, and the error of a run.
 
+use alloc::vec::Vec;
+
 use crate::groups::LieGroup;
 use crate::numbers::{Coordinates as _, Entries};
 
@@ -43,31 +45,73 @@ pub struct Trials {
     pub operations: f64,
 }
 
-/// The start of the runs, and their horizon.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Start<G: LieGroup> {
-    pub(super) attitude: G,
-    pub(super) velocity: G::Vector,
+/// The start of the runs in numbers, and their horizon.
+#[derive(Clone, Debug)]
+pub(super) struct Start {
+    pub(super) attitude: Vec<f64>,
+    pub(super) velocity: Vec<f64>,
     pub(super) horizon: f64,
+    /// A displacement by some roundings, in all directions, and the attitude displaced by it.
+    aside: Vec<f64>,
+    beside: Vec<f64>,
 }
 
 /// Distance of two starts that rounding doesn't distinguish: about the sum of the roundings in the first hundred stages
 /// of a run.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
-impl<G: LieGroup<Scalar = f64>> Start<G> {
+/// The components of a displacement by some roundings.
+pub(super) fn displacement(components: usize) -> Vec<f64> {
+    // The last components are the largest, and signs alternate.
+    let weight = |component: usize| (component + 1..components).fold(1.0, |weight: f64, _| weight * -0.8);
+    (0..components).map(|component| weight(component) * ROUNDINGS).collect()
+}
+
+impl Start {
+    pub(super) fn of_numbers([attitude, beside]: [&[f64]; 2], velocity: &[f64], horizon: f64) -> Self {
+        let aside = displacement(velocity.len());
+        Self { attitude: attitude.into(), velocity: velocity.into(), horizon, aside, beside: beside.into() }
+    }
+
+    pub(super) fn new<G: LieGroup<Scalar = f64>>(attitude: &G, velocity: &G::Vector, horizon: f64) -> Self {
+        let axes = (0..G::DIMENSION).map(G::Vector::axis);
+        let aside = axes.fold(G::Vector::zero(), |sum, axis| sum * -0.8 + axis) * ROUNDINGS;
+        let beside = attitude.compose(&G::from_increment(&G::hat(&aside)));
+        let [attitude, beside] = [attitude, &beside].map(|attitude| numbers(&attitude.matrix()));
+        Self { attitude, velocity: numbers(velocity), horizon, aside: numbers(&aside), beside }
+    }
+
     /// This start with another horizon.
     pub(super) fn until(&self, horizon: f64) -> Self {
-        Self { horizon, ..*self }
+        Self { horizon, ..self.clone() }
     }
 
     /// A start that differs by some roundings, in all directions.
     pub(super) fn nearby(&self) -> Self {
-        let axes = (0..G::DIMENSION).map(G::Vector::axis);
-        let aside = axes.fold(G::Vector::zero(), |sum, axis| sum * -0.8 + axis) * ROUNDINGS;
-        let attitude = self.attitude.compose(&G::from_increment(&G::hat(&aside)));
-        let velocity = self.velocity + aside * size(&self.velocity).max(self.horizon.recip());
-        Self { attitude, velocity, horizon: self.horizon }
+        let scale = size(&self.velocity).max(self.horizon.recip());
+        let velocity = self.velocity.iter().zip(&self.aside).map(|(velocity, aside)| velocity + aside * scale);
+        Self { attitude: self.beside.clone(), velocity: velocity.collect(), ..self.clone() }
+    }
+}
+
+/// The end of a run in numbers.
+#[derive(Clone, Debug)]
+pub(super) struct EndNumbers {
+    pub(super) attitude: Vec<f64>,
+    pub(super) velocity: Vec<f64>,
+}
+
+impl EndNumbers {
+    /// The error of [`End::error`].
+    pub(super) fn error(&self, exact: &Self, start: &[f64], time: f64) -> f64 {
+        let apart = |a: &[f64], b: &[f64]| size(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
+        let scale = size(start).max(size(&exact.velocity)).max(time.abs().recip());
+        let attitudes = apart(&self.attitude, &exact.attitude) / size(&exact.attitude);
+        attitudes.hypot(apart(&self.velocity, &exact.velocity) / scale)
+    }
+
+    pub(super) fn is_finite(&self) -> bool {
+        (size(&self.attitude) + size(&self.velocity)).is_finite()
     }
 }
 
@@ -91,19 +135,21 @@ impl<G: LieGroup<Scalar = f64>> End<G> {
     /// ```
     #[must_use]
     pub fn error(&self, exact: &Self, start: &G::Vector, time: f64) -> f64 {
-        let apart = |a: &G::Vector, b: &G::Vector| size(&a.zip(b, &mut |a, b| a - b));
-        let attitudes = self.attitude.matrix().zip(&exact.attitude.matrix(), &mut |a, b| a - b);
-        let scale = size(start).max(size(&exact.velocity)).max(time.abs().recip());
-        (size(&attitudes) / size(&exact.attitude.matrix())).hypot(apart(&self.velocity, &exact.velocity) / scale)
+        self.numbers().error(&exact.numbers(), &numbers(start), time)
     }
 
-    pub(super) fn is_finite(&self) -> bool {
-        (size(&self.attitude.matrix()) + size(&self.velocity)).is_finite()
+    fn numbers(&self) -> EndNumbers {
+        EndNumbers { attitude: numbers(&self.attitude.matrix()), velocity: numbers(&self.velocity) }
     }
 }
 
-fn size<E: Entries<f64>>(entries: &E) -> f64 {
-    let mut squares = 0.0;
-    entries.each(&mut |entry| squares += entry * entry);
-    squares.sqrt()
+/// The numbers of a vector or a matrix.
+fn numbers<E: Entries<f64>>(entries: &E) -> Vec<f64> {
+    let mut numbers = Vec::new();
+    entries.each(&mut |entry| numbers.push(entry));
+    numbers
+}
+
+fn size(numbers: &[f64]) -> f64 {
+    numbers.iter().fold(0.0, |squares, number| squares + number * number).sqrt()
 }

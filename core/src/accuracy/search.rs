@@ -1,16 +1,15 @@
 //! The search for the cheapest method: all are compared over a short part of the motion, and those still near the
 //! cheapest over parts eight times as long each.
 
-use alloc::string::String;
+use alloc::string::{String, ToString as _};
 use alloc::vec::Vec;
 
 use super::choice::{Choice, Offer};
 use super::error::AccuracyError;
-use super::ladder::{LARGEST_ERROR, Ladder, Reference, Run};
-use super::methods::Method;
+use super::ladder::{LARGEST_ERROR, Ladder, Reference, Run, UNKNOWN};
+use super::methods::Candidate;
 use super::question::{Accuracy, Start, Trials};
-use crate::groups::{Advected, LieGroup};
-use crate::motion::Cost;
+use crate::motion::{Cost, Integrator as _};
 
 roots!();
 
@@ -37,11 +36,11 @@ const MOST_OPERATIONS: f64 = 1e9;
 const OF_ROUNDING: f64 = 0.25;
 
 /// The cheapest accurate run so far.
-#[derive(Clone, Copy)]
-struct Best<G: LieGroup> {
+#[derive(Clone)]
+struct Best {
     index: usize,
     error: f64,
-    run: Run<G>,
+    run: Run,
 }
 
 /// Reasons against methods that don't reach the tolerance.
@@ -57,47 +56,50 @@ struct Refused {
 }
 
 /// The methods over one part of the motion.
-struct Survey<'a, G: LieGroup, A> {
+struct Survey<'a> {
     tolerance: f64,
-    ladders: Vec<Ladder<'a, G, A>>,
-    reference: Reference<G>,
-    best: Best<G>,
+    ladders: Vec<Ladder<'a>>,
+    reference: Reference,
+    best: Best,
 }
 
 /// A requested accuracy, and the results of the trials.
-struct Search<'a, G: LieGroup, A> {
-    methods: &'a [Method<G, A>],
+struct Search<'a> {
+    methods: &'a [Candidate],
     costs: Vec<Cost>,
     accuracy: Accuracy,
-    start: Start<G>,
+    start: Start,
     trials: Trials,
     refused: Refused,
 }
 
 /// The cheapest method for an accuracy, by operations.
-pub(super) fn search<G: LieGroup<Scalar = f64>, A: Advected<G>>(
-    methods: &[Method<G, A>],
-    accuracy: Accuracy,
-    start: Start<G>,
-) -> Result<Choice, AccuracyError> {
+pub(super) fn search(methods: &[Candidate], accuracy: Accuracy, start: &Start) -> Result<Choice, AccuracyError> {
     // A fault of the scene or of the start doesn't depend on the step.
-    let cost = |method: &Method<G, A>| -> Result<Cost, AccuracyError> {
+    let cost = |method: &Candidate| -> Result<Cost, AccuracyError> {
         let stepper = (method.make)(accuracy.horizon / 1024.0).or_else(|_| (method.make)(accuracy.horizon))?;
-        stepper.start(start.attitude, start.velocity)?;
-        Ok(stepper.cost())
+        stepper.start(&start.attitude, &start.velocity)?;
+        Ok(stepper.cost().unwrap_or(UNKNOWN))
     };
     let costs = methods.iter().map(cost).collect::<Result<_, _>>()?;
-    let mut search = Search { methods, costs, accuracy, start, trials: Trials::default(), refused: Refused::default() };
+    let mut search = Search {
+        methods,
+        costs,
+        accuracy,
+        start: start.clone(),
+        trials: Trials::default(),
+        refused: Refused::default(),
+    };
     search.found().ok_or_else(|| search.refusal())
 }
 
-impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
+impl<'a> Search<'a> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number
     fn found(&mut self) -> Option<Choice> {
         let (mut times, ladder) = self.shown()?;
         let mut survey = self.survey(times, Some(ladder), None)?;
         while times > 1.0 {
-            let Best { index, run, .. } = survey.best;
+            let Best { index, ref run, .. } = survey.best;
             if times * run.cost > MOST_OPERATIONS {
                 self.note_steps(index, times * run.steps, false);
                 return None;
@@ -126,12 +128,12 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
                     (steps, ladder.least(steps).max(run.cost), true)
                 }
             };
-            let Method { name, order, .. } = ladder.method;
+            let scheme = ladder.method.scheme;
             let step = self.accuracy.horizon / steps;
-            Offer { name: name.clone(), order: *order, step, cost: cost / run.cost, is_bound }
+            Offer { scheme, order: scheme.order(), step, cost: cost / run.cost, is_bound }
         };
         // The exact motion takes one step for any tolerance.
-        let is_exact = ladders[index].method.is_exact;
+        let is_exact = ladders[index].method.is_exact();
         let of = |error| cost(index, error).filter(|_| !is_exact).map_or(run.cost, |(_, cost)| cost);
         Some(Choice {
             accuracy: self.accuracy,
@@ -145,9 +147,9 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
     }
 
     /// The ratio of the horizon to the longest part that a few steps of the cheapest method resolve.
-    fn shown(&mut self) -> Option<(f64, Ladder<'a, G, A>)> {
+    fn shown(&mut self) -> Option<(f64, Ladder<'a>)> {
         let cheapest = (0..self.methods.len()).min_by(|&a, &b| {
-            let place = |k: usize| (!self.methods[k].is_exact, self.costs[k].least());
+            let place = |k: usize| (!self.methods[k].is_exact(), self.costs[k].least());
             place(a).0.cmp(&place(b).0).then(place(a).1.total_cmp(&place(b).1))
         })?;
         for shortenings in 0..MOST_SHORTENINGS {
@@ -175,21 +177,16 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         if times <= 1.0 { tolerance } else { (tolerance / times).max(512.0 * f64::EPSILON) }
     }
 
-    fn ladder(&self, index: usize, times: f64) -> Ladder<'a, G, A> {
+    fn ladder(&self, index: usize, times: f64) -> Ladder<'a> {
         Ladder::new(&self.methods[index], self.costs[index], self.start.until(self.accuracy.horizon / times))
     }
 
     /// Compares the methods over a part, with estimates from a shorter one.
-    fn survey(
-        &mut self,
-        times: f64,
-        known: Option<Ladder<'a, G, A>>,
-        shorter: Option<&Survey<'a, G, A>>,
-    ) -> Option<Survey<'a, G, A>> {
+    fn survey(&mut self, times: f64, known: Option<Ladder<'a>>, shorter: Option<&Survey<'a>>) -> Option<Survey<'a>> {
         let (tolerance, is_whole) = (self.tolerance(times), times <= 1.0);
         let mut ladders: Vec<_> = (0..self.methods.len()).map(|index| self.ladder(index, times)).collect();
         if let Some(known) = known {
-            let same = |ladder: &&mut Ladder<'a, G, A>| core::ptr::eq(ladder.method, known.method);
+            let same = |ladder: &&mut Ladder<'a>| core::ptr::eq(ladder.method, known.method);
             if let Some(place) = ladders.iter_mut().find(same) {
                 *place = known;
             }
@@ -197,7 +194,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         let promised = |index: usize| shorter.and_then(|shorter| shorter.promised(index, AIM * shorter.tolerance));
         let mut scouts: Vec<usize> = (0..ladders.len()).collect();
         let place = |index: usize| {
-            let ladder: &Ladder<'_, G, A> = &ladders[index];
+            let ladder: &Ladder<'_> = &ladders[index];
             // Expected cost if the errors of all methods fell from the largest with one step.
             let alike = || ladder.least((LARGEST_ERROR / (OF_THE_REFERENCE * tolerance)).powf(ladder.order().recip()));
             let cost = promised(index).map(|(_, cost)| cost);
@@ -220,18 +217,18 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
     fn approach(
         &mut self,
         index: usize,
-        ladder: &mut Ladder<'a, G, A>,
+        ladder: &mut Ladder<'a>,
         first: Option<f64>,
         (tolerance, is_whole): (f64, bool),
-    ) -> Option<(Reference<G>, Best<G>)> {
-        let next = |ladder: &Ladder<'a, G, A>| ladder.finest().map_or(1.0, |run| 2.0 * run.steps);
+    ) -> Option<(Reference, Best)> {
+        let next = |ladder: &Ladder<'a>| ladder.finest().map_or(1.0, |run| 2.0 * run.steps);
         let (mut steps, mut is_looked_at) = (first.unwrap_or_else(|| next(ladder)), false);
         // A few long steps may not have the method's order yet, so it is assumed only after it has been observed.
         let unseen = first.map_or(1.0, |_| ladder.order());
-        if let (Some((left, _)), Some(run)) = (ladder.left(1.0), ladder.finest().copied())
+        if let (Some((left, _)), Some(run)) = (ladder.left(1.0), ladder.finest().cloned())
             && left <= OF_THE_REFERENCE * tolerance
         {
-            return Some(((run.end?, left), Best { index, error: left, run }));
+            return Some(((run.end.clone()?, left), Best { index, error: left, run }));
         }
         loop {
             let left = ladder.left(unseen);
@@ -252,11 +249,11 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
                 continue;
             };
             if left <= OF_THE_REFERENCE * tolerance {
-                return Some(((run.end?, left), Best { index, error: left, run }));
+                return Some(((run.end.clone()?, left), Best { index, error: left, run }));
             }
             let floor = ladder.floor();
             if floor.is_some() && !is_whole {
-                return Some(((run.end?, left), Best { index, error: left, run }));
+                return Some(((run.end.clone()?, left), Best { index, error: left, run }));
             }
             // Far more steps than a shorter part predicts may be a sign of rounding.
             if floor.is_some() || (first.is_some_and(|first| steps > 4.0 * first) && !is_looked_at) {
@@ -280,15 +277,15 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
     /// Runs the method with the lowest expected cost, again and again, until none can be cheaper than the best.
     fn compared(
         &mut self,
-        mut ladders: Vec<Ladder<'a, G, A>>,
-        (reference, mut best): (Reference<G>, Best<G>),
+        mut ladders: Vec<Ladder<'a>>,
+        (reference, mut best): (Reference, Best),
         (tolerance, is_whole): (f64, bool),
-        shorter: Option<&Survey<'a, G, A>>,
-    ) -> Survey<'a, G, A> {
+        shorter: Option<&Survey<'a>>,
+    ) -> Survey<'a> {
         let aim = AIM * tolerance;
-        let improve = |best: &mut Best<G>, index: usize, error: Option<f64>, run: &Run<G>| match error {
+        let improve = |best: &mut Best, index: usize, error: Option<f64>, run: &Run| match error {
             Some(error) if error <= ACCEPTED * tolerance && run.cost < best.run.cost => {
-                *best = Best { index, error, run: *run };
+                *best = Best { index, error, run: run.clone() };
             }
             _ => {}
         };
@@ -297,7 +294,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
         }
         loop {
             let level = shorter.map_or(aim, |shorter| shorter.level(&best, aim));
-            let next = |(index, ladder): (usize, &Ladder<'a, G, A>)| {
+            let next = |(index, ladder): (usize, &Ladder<'a>)| {
                 let is_tried = !ladder.runs.is_empty();
                 let (steps, cost) = match (ladder.takes(&reference, aim), shorter) {
                     (Some(taken), _) => ladder.of_run(taken),
@@ -323,7 +320,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
 
     /// Records the first method that needs too many steps.
     fn note_steps(&mut self, index: usize, steps: f64, is_bound: bool) {
-        let name = || self.methods[index].name.clone();
+        let name = || self.methods[index].scheme.to_string();
         self.refused.many.get_or_insert_with(|| (steps, is_bound, name()));
     }
 
@@ -341,7 +338,7 @@ impl<'a, G: LieGroup<Scalar = f64>, A: Advected<G>> Search<'a, G, A> {
     }
 }
 
-impl<G: LieGroup<Scalar = f64>, A: Advected<G>> Survey<'_, G, A> {
+impl Survey<'_> {
     /// Expected steps and operations over the next part, from the steps for an error over this one.
     fn promised(&self, index: usize, error: f64) -> Option<(f64, f64)> {
         let (steps, a_step) = self.ladders[index].takes(&self.reference, error)?;
@@ -356,7 +353,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G>> Survey<'_, G, A> {
     }
 
     /// The error over this part that corresponds to `aim` over the next, by the growth of the best run's error.
-    fn level(&self, best: &Best<G>, aim: f64) -> f64 {
+    fn level(&self, best: &Best, aim: f64) -> f64 {
         let here = self.ladders[best.index].error_at(&self.reference, best.run.steps / SHORTER);
         here.map_or(AIM * self.tolerance, |here| here * (aim / best.error)).max(f64::EPSILON)
     }

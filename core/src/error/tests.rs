@@ -43,7 +43,10 @@ macro_rules! errors_say {
 
 errors_say!(setup_errors: SetupError {
     Parameter { field: "rho", cause: "is not finite" } => ["`rho`", "is not finite"];
+    Method { cause: "needs SO3; take the step" } => ["the method", "needs SO3"];
+    Length { what: "velocity", found: 2, expected: 3 } => ["the velocity has 2 numbers", "not 3"];
     BodyParameter { body: 7, field: "m", cause: "isn't a mass" } => ["`m`", "the body 7", "isn't a mass"];
+    Place { cause: "a term is at a body that there isn't" } => ["a term", "that there isn't"];
     Joint { joint: 7, cause: "closes a loop" } => ["the joint 7", "closes a loop"];
     JointParameter { joint: 7, field: "above", cause: "is not finite" } => ["`above`", "the joint 7", "is not finite"];
     OffConstraint { joint: 7, by: 0.5 }

@@ -1,11 +1,9 @@
 //! Arrays of equal groups, for many bodies.
 
-use alloc::format;
-use alloc::string::String;
 use alloc::vec::Vec;
 use core::array::from_fn;
 
-use super::{Advected, CayleyRetraction, ExponentialRetraction, Factor, LieGroup, Retraction, SquareOf};
+use super::{Advected, CayleyRetraction, ExponentialRetraction, Factor, LieGroup, Retraction, SquareOf, layout};
 use crate::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Join, Mask, Twice, filled, nowhere};
 use nalgebra::SimdBool as _;
 
@@ -95,16 +93,12 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         Bodies(filled!(momentum.0, |k| G::adjoint_transpose_increment(&increment[k], &momentum.0[k])))
     }
 
-    fn named_numbers() -> Vec<(String, &'static str)> {
-        of_bodies::<_, N>(&G::named_numbers())
+    fn factors() -> Vec<layout::Factor> {
+        (1..=N).flat_map(|place| G::factors().into_iter().map(move |factor| factor.at(place))).collect()
     }
 
     fn write_numbers<'a>(&self, numbers: &'a mut [G::Scalar]) -> &'a mut [G::Scalar] {
         self.iter().fold(numbers, |numbers, body| body.write_numbers(numbers))
-    }
-
-    fn named_components() -> Vec<(String, [&'static str; 2])> {
-        of_bodies::<_, N>(&G::named_components())
     }
 
     fn turning_components() -> Vec<bool> {
@@ -127,12 +121,6 @@ impl<G: LieGroup, const N: usize> LieGroup for [G; N] {
         }
         far.any().then_some((elements, far))
     }
-}
-
-/// The names of all bodies, each followed by the number of its body, from one: `x_1`, `x_2`.
-fn of_bodies<U: Copy, const N: usize>(names: &[(String, U)]) -> Vec<(String, U)> {
-    let of_body = |place: usize| names.iter().map(move |(name, unit)| (format!("{name}_{place}"), *unit));
-    (1..=N).flat_map(of_body).collect()
 }
 
 /// Implements a retraction body by body.

@@ -31,6 +31,7 @@ mod bodies;
 mod exponential;
 mod generators;
 mod heisenberg;
+pub(crate) mod layout;
 mod matrix_group;
 mod product;
 mod retraction;
@@ -70,9 +71,6 @@ pub use so3::{NotARotation, SO3};
 pub use su2::{SU2, SU2Generators};
 pub use translations::{R1, R2, R3, TranslationGenerators};
 
-use alloc::format;
-use alloc::string::String;
-use alloc::string::ToString as _;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::fmt::Debug;
@@ -204,24 +202,21 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
     #[doc(hidden)]
     const COORDINATES: &'static [&'static str] = &[];
 
-    /// The columns of an element in a table, each with a name and a unit: on SO(3) its unit quaternion, for
-    /// translations `x`, `y` and `z`, on a product those of its factors, on other groups the entries of the matrix, row
-    /// by row: `g_12`, or `g_1_12` for ten rows or more. An unknown unit is empty.
+    /// The factors of the group, with the names of their columns and components in tables.
     #[must_use]
-    fn named_numbers() -> Vec<(String, &'static str)> {
-        let translations = Self::COORDINATES;
-        if !translations.is_empty() {
-            return translations.iter().map(|name| ((*name).into(), "m")).collect();
-        }
+    fn factors() -> Vec<layout::Factor> {
         let mut entries = 0;
         Self::identity().matrix().each(&mut |_| entries += 1);
         let rows = (1..=entries).find(|rows| rows * rows >= entries).unwrap_or(1);
-        // The separator keeps 1, 11 and 11, 1 apart.
-        let between = if rows > 9 { "_" } else { "" };
-        (0..entries).map(|entry| (format!("g_{}{between}{}", entry / rows + 1, entry % rows + 1), "")).collect()
+        let kind = if Self::COORDINATES.is_empty() {
+            layout::FactorKind::Matrix(rows)
+        } else {
+            layout::FactorKind::Translation(rows)
+        };
+        vec![layout::Factor::of(kind, Self::DIMENSION)]
     }
 
-    /// Writes these numbers over those of the element before, or over zeros, and returns the rest of the slice. A
+    /// Writes the numbers of the [columns](layout::Factor::columns) of all factors over those of the element before, or over zeros, and returns the rest of the slice. A
     /// quaternion has the sign that is nearer to the one before.
     fn write_numbers<'a>(&self, numbers: &'a mut [Self::Scalar]) -> &'a mut [Self::Scalar] {
         let (mut places, mut entry, rows) = (numbers.iter_mut(), 0, Self::COORDINATES.len() + 1);
@@ -234,14 +229,6 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
             }
         });
         places.into_slice()
-    }
-
-    /// The components of algebra elements and covectors: a name, and the units of a velocity and of a momentum. They
-    /// are `x`, `y`, `z` on SO(3), on a product those of its factors, on other groups numbers from one. An unknown unit
-    /// is empty.
-    #[must_use]
-    fn named_components() -> Vec<(String, [&'static str; 2])> {
-        (1..=Self::DIMENSION).map(|component| (component.to_string(), [""; 2])).collect()
     }
 
     /// The angular components of a velocity, rad/s: all on SO(3), none of a translation, on a product those of its

@@ -1,10 +1,8 @@
 //! Products of groups, for several bodies.
 
-use alloc::format;
-use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::{CayleyRetraction, ExponentialRetraction, LieGroup, Retraction};
+use super::{CayleyRetraction, ExponentialRetraction, LieGroup, Retraction, layout};
 use crate::numbers::{Blocks, Coordinates, Join, Mask, nowhere};
 use nalgebra::SimdBool as _;
 
@@ -39,13 +37,10 @@ pub trait Factor<const K: usize>: LieGroup {
 /// The components of two groups, one after the other.
 type Joined<A, B, T> = <A as Join<T, B>>::Joined;
 
-/// The names of all factors, each followed by the number of its factor: `x_1`, `x_2`.
-fn of_factors<U, const N: usize>(factors: [Vec<(String, U)>; N]) -> Vec<(String, U)> {
-    let named = (1..).zip(factors).map(|(place, names)| {
-        let place: u32 = place;
-        names.into_iter().map(move |(name, unit)| (format!("{name}_{place}"), unit))
-    });
-    named.flatten().collect()
+/// The factors of a product, whose names end with their places.
+fn at_places<const N: usize>(factors: [Vec<layout::Factor>; N]) -> Vec<layout::Factor> {
+    let placed = |(place, factors): (usize, Vec<layout::Factor>)| factors.into_iter().map(move |one| one.at(place));
+    (1..).zip(factors).flat_map(placed).collect()
 }
 
 /// Implements a product from the type of each factor, its place, and a name for its part; then an expression that joins
@@ -169,17 +164,13 @@ macro_rules! product {
                 $join
             }
 
-            fn named_numbers() -> Vec<(String, &'static str)> {
-                of_factors([$($group::named_numbers()),+])
+            fn factors() -> Vec<layout::Factor> {
+                at_places([$($group::factors()),+])
             }
 
             fn write_numbers<'a>(&self, numbers: &'a mut [$scalar]) -> &'a mut [$scalar] {
                 $(let numbers = self.$place.write_numbers(numbers);)+
                 numbers
-            }
-
-            fn named_components() -> Vec<(String, [&'static str; 2])> {
-                of_factors([$($group::named_components()),+])
             }
 
             fn turning_components() -> Vec<bool> {

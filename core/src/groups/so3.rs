@@ -1,7 +1,5 @@
 //! The rotations of space.
 
-use alloc::borrow::ToOwned as _;
-use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -9,6 +7,7 @@ use nalgebra::{Matrix3, Quaternion, RealField, Rotation3, SimdBool as _, UnitQua
 use thiserror::Error;
 
 use super::LieGroup;
+use super::layout::{Factor, FactorKind};
 use super::rotation_functions::{quaternion, rotation_exp, rotation_log, skew_components};
 use crate::numbers::{Mask, Real, real};
 
@@ -276,8 +275,8 @@ impl<T: Real> LieGroup for SO3<T> {
         Some(Self(rotation))
     }
 
-    fn named_numbers() -> Vec<(String, &'static str)> {
-        ["q_w", "q_x", "q_y", "q_z"].map(|name| (name.to_owned(), "1")).into()
+    fn factors() -> Vec<Factor> {
+        vec![Factor::of(FactorKind::Rotation, 3)]
     }
 
     // Inlined, so that the length of the caller's array needs no check.
@@ -289,10 +288,6 @@ impl<T: Real> LieGroup for SO3<T> {
         let flips = before.simd_lt(T::zero());
         *own = if flips.any() { quaternion.map(|part| (-part).select(flips, part)) } else { quaternion };
         behind
-    }
-
-    fn named_components() -> Vec<(String, [&'static str; 2])> {
-        ["x", "y", "z"].map(|name| (name.to_owned(), ["rad/s", "kg m²/s"])).into()
     }
 
     fn turning_components() -> Vec<bool> {

@@ -54,16 +54,6 @@ impl Parts {
     }
 }
 
-/// The residual of an effect at an increment, without a Jacobian, by [`Effect::newton_residual`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Residual<V> {
-    /// The residual of [`newton_system`](Effect::newton_system), the error of the momentum equation (2.7).
-    pub momentum_defect: V,
-    /// The part `k` of the diamond that depends on `F`, if the gradient of `l_d` for the residual yields it, too. It
-    /// then replaces [`kick_after`](Effect::kick_after): `Ad*_F k = kick_after(F, w⁺)`.
-    pub moving_kick: Option<V>,
-}
-
 /// The result of one Newton iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[doc(hidden)]
@@ -168,14 +158,13 @@ impl<E: Effect + ?Sized> Limit<E> {
     label = "not an effect",
     note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums",
     note = "a continuous Lagrangian `l = …` is one with `discretise = …`, which makes its steps",
-    note = "joints hold the bodies of a scene together: `Stepper::jointed(scene, Joints::tree([…]), h)`"
+    note = "joints are added to a system of bodies: `liestep::methods::Multibody`"
 )]
 #[hot]
 pub trait Effect: Term {
     /// The coordinates of the Newton unknown.
     type Retraction: Retraction<Self::Group>;
-    /// The kind of kinetic part: [`WithKinetic`], [`WithEitherKinetic`](crate::mechanics::WithEitherKinetic) or
-    /// [`WithoutKinetic`](crate::mechanics::WithoutKinetic); the macros write further kinds.
+    /// The kind of kinetic part: [`WithKinetic`] or [`WithoutKinetic`](crate::mechanics::WithoutKinetic).
     type Kinetic: KineticPart;
     /// The quantities that depend on the parameters and `h`.
     type Constants: Clone + Debug + PartialEq;
@@ -187,14 +176,6 @@ pub trait Effect: Term {
 
     /// The power of the Cayley denominator in the factor of [`newton_system`](Self::newton_system).
     const DENOMINATORS: u32 = 0;
-
-    /// Whether the Jacobian of [`newton_system`](Self::newton_system) may cost more than several residuals.
-    ///
-    /// If so, a solve starts with the [residual](Self::newton_residual) alone and the Jacobian of the free body with
-    /// the same [`inertia`](Self::inertia), [`Retraction::free_momentum_tangent`]; [`DENOMINATORS`](Self::DENOMINATORS)
-    /// must then be zero. The macro decides it by counting operations, and writes it as [`Kinetic`](Self::Kinetic), by
-    /// which a state also stores a longer history.
-    const JACOBIAN_IS_EXPENSIVE: bool = Self::Kinetic::JACOBIAN_IS_EXPENSIVE;
 
     /// Whether [`inertia`](Self::inertia) is the same for all `w`. If so, it is checked once, when a stepper is
     /// constructed, and methods that contain the motion of one free body are available.
@@ -258,12 +239,6 @@ pub trait Effect: Term {
     #[must_use]
     fn apart(_: &Self::Constants) -> Blocks {
         Self::APART
-    }
-
-    /// [`JACOBIAN_IS_EXPENSIVE`](Self::JACOBIAN_IS_EXPENSIVE) of a value, if its type may be expensive.
-    #[must_use]
-    fn jacobian_is_expensive(_: &Self::Constants) -> bool {
-        Self::JACOBIAN_IS_EXPENSIVE
     }
 
     /// Visits the derivations and, field by field in the order of the declaration, every scalar of the parameters.
@@ -374,19 +349,9 @@ pub trait Effect: Term {
     }
 
     /// The residual of [`newton_system`](Self::newton_system) without its Jacobian.
-    fn newton_residual(
-        constants: &Self::Constants,
-        terms: &Self::StepTerms,
-        half: &Vector<Self>,
-    ) -> Residual<Vector<Self>> {
-        Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None }
-    }
-
-    /// The part of [`kick_after`](Self::kick_after) that isn't in the [`moving_kick`](Residual::moving_kick) of
-    /// [`newton_residual`](Self::newton_residual): that of the other terms of a sum.
     #[must_use]
-    fn kick_beside(_: &Self::Constants, _: &Matrix<Self>, _: &Self::Advected) -> Option<Vector<Self>> {
-        None
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
+        Self::newton_system(constants, terms, half).0
     }
 
     /// `Ad*_F` of the part of the diamond that depends on `F`, as a function of the new `w⁺`; `increment` is `F − I`.
@@ -400,7 +365,7 @@ pub trait Effect: Term {
 /// on `w`, [`Stepper::start`](crate::motion::Stepper::start) does.
 pub trait Regular: Effect {}
 
-impl<E: Effect> Regular for E where <E::Kinetic as KineticPart>::ByNewton: Moves<E> {}
+impl<E: Effect> Regular for E where E::Kinetic: Moves<E> {}
 
 /// The kinetic part of the effect `E`, as a trait whose error message names `E` if there is none.
 #[diagnostic::on_unimplemented(

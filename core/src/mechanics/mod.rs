@@ -24,13 +24,13 @@ mod velocity;
 
 pub use continuous::{ContinuousLagrangian, Legendre};
 pub use description::SceneVisitor;
-pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regular, Residual, Scalar, Square, Vector};
+pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regular, Scalar, Square, Vector};
 pub(crate) use effect::{pattern, pattern_of_type, update_of};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
 #[doc(hidden)]
-pub use kinetic_part::{KineticPart, OnlyKicks, WithExpensiveKinetic, WithPace};
-pub use kinetic_part::{WithEitherKinetic, WithKinetic, WithoutKinetic};
+pub use kinetic_part::{KineticPart, OnlyKicks};
+pub use kinetic_part::{WithKinetic, WithoutKinetic};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub(crate) use noether::{left_symmetries, right_symmetries};
 pub use operations::Operations;

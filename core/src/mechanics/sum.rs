@@ -7,9 +7,7 @@ use core::ops::Add;
 use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{
-    Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, update_of,
-};
+use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Square, Vector, update_of};
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
@@ -152,12 +150,6 @@ where
     );
     const APART: Blocks = of_those_with!(unknown: A::APART.or(B::APART), A::APART, B::APART);
     const LINKS_NEIGHBOURS: bool = A::LINKS_NEIGHBOURS || B::LINKS_NEIGHBOURS;
-    // The one unknown part's own kernel is run; two are added with their Jacobians, which the value says.
-    const JACOBIAN_IS_EXPENSIVE: bool = of_those_with!(
-        unknown: A::JACOBIAN_IS_EXPENSIVE || B::JACOBIAN_IS_EXPENSIVE,
-        A::JACOBIAN_IS_EXPENSIVE,
-        B::JACOBIAN_IS_EXPENSIVE,
-    );
     const INERTIA_IS_CONSTANT: bool = A::INERTIA_IS_CONSTANT && B::INERTIA_IS_CONSTANT;
     const IS_QUADRATIC: bool = A::IS_QUADRATIC && B::IS_QUADRATIC;
     const OPERATIONS: Operations = Operations {
@@ -196,11 +188,6 @@ where
     fn apart(constants: &Self::Constants) -> Blocks {
         let (first, second) = (A::apart(&constants.0), B::apart(&constants.1));
         of_those_with!(constants, unknown: first.or(second), first, second)
-    }
-
-    fn jacobian_is_expensive(constants: &Self::Constants) -> bool {
-        let (first, second) = (A::jacobian_is_expensive(&constants.0), B::jacobian_is_expensive(&constants.1));
-        of_those_with!(constants, unknown: false, first, second)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
@@ -307,34 +294,12 @@ where
         )
     }
 
-    fn newton_residual(
-        constants: &Self::Constants,
-        terms: &Self::StepTerms,
-        half: &Vector<Self>,
-    ) -> Residual<Vector<Self>> {
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
         of_those_with!(
-            constants, unknown: Residual { momentum_defect: Self::newton_system(constants, terms, half).0, moving_kick: None },
+            constants, unknown: Self::newton_system(constants, terms, half).0,
             A::newton_residual(&constants.0, &terms.0, half),
             B::newton_residual(&constants.1, &terms.1, half),
         )
-    }
-
-    fn kick_beside(
-        constants: &Self::Constants,
-        increment: &Matrix<Self>,
-        next: &Self::Advected,
-    ) -> Option<Vector<Self>> {
-        let (beside, other) = if A::parts(&constants.0).unknown {
-            let other = || B::kick_after(&constants.1, increment, &next.1);
-            (A::kick_beside(&constants.0, increment, &next.0), B::parts(&constants.1).kick_after.then(other))
-        } else {
-            let other = || A::kick_after(&constants.0, increment, &next.0);
-            (B::kick_beside(&constants.1, increment, &next.1), A::parts(&constants.0).kick_after.then(other))
-        };
-        match (beside, other) {
-            (Some(beside), Some(other)) => Some(beside + other),
-            (beside, other) => beside.or(other),
-        }
     }
 
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {

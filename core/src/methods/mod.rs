@@ -10,7 +10,7 @@
 //! | [`Gauss`], by [`Stepper::collocated`](crate::Stepper::collocated) | `4 PAIRS` | SO(3), a separate potential, `f64` | as above |
 //! | [`CotangentGauss`], a map of its own | `4 PAIRS` | any `l(ξ, w)` on a single group, `f64` | as above |
 //! | [`LinkedBodies`], by [`Stepper::linked`](crate::Stepper::linked) | 2 | links on ball joints, potentials, `f64` | Poisson structure, momentum maps |
-//! | [`JointedBodies`], by [`Stepper::jointed`](crate::Stepper::jointed) | the declaration's, mostly 2 | bodies `(SO3, R3)` and joints, `f64` | Poisson structure, momentum maps |
+//! | [`MultibodyStepper`], by [`Multibody::stepper`] | the declaration's, mostly 2 | bodies `(SO3, R3)` and joints, `f64` | Poisson structure, momentum maps |
 
 #[macro_use]
 mod schemes;
@@ -18,7 +18,7 @@ mod schemes;
 mod chain;
 mod composition;
 mod gauss;
-mod joints;
+mod multibody;
 mod splitting;
 #[cfg(test)]
 mod tests;
@@ -28,7 +28,7 @@ pub use composition::{Composition, CompositionScheme};
 #[doc(hidden)]
 pub use gauss::{CollocationMemory, CotangentCarry};
 pub use gauss::{CotangentGauss, Gauss};
-pub use joints::{BallJoint, Constraint, Joint, JointedBodies, Joints, PinJoint, Place, PlacedJoint, Slope};
+pub use multibody::{BallJoint, Constraint, Multibody, MultibodyStepper, PinJoint, Place, Slope};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{
     DifferentiableFlow, ExactBody, Flow, Inside, KineticFlow, ProcessedScheme, ProcessedSplitting, Splitting,

@@ -1,337 +1,300 @@
-//! A stepper without its scene and method in the type.
+//! A stepper without its scene and method in the type, whose states are numbers.
 
 use alloc::boxed::Box;
 use alloc::rc::Rc;
-use core::any::Any;
+use alloc::vec;
+use alloc::vec::Vec;
 use core::fmt::{self, Debug};
-use core::mem;
+use core::ops::Deref;
 
 use crate::error::{SetupError, StepError};
-use crate::groups::{Advected, LieGroup};
-use crate::mechanics::{Effect, FactoredInertia, Group};
-use crate::motion::integrator::{Integrator, seeing};
-use crate::motion::plan::{Cost, NextSteps, Plan};
+use crate::groups::layout::{Factor, FactorKind};
+use crate::groups::{LieGroup, SO3};
+use crate::motion::integrator::Integrator;
+use crate::motion::plan::Cost;
+use crate::motion::propagator::{Layout, Propagator};
 use crate::motion::report::StepReport;
-use crate::motion::state::State;
-use crate::motion::stepper::Stepper;
-use crate::motion::summation::Motion;
+use crate::numbers::Entries;
+use nalgebra::Matrix3;
 
-/// A [`Stepper`] of any scene and any method on the group `G`, by [`Stepper::into_any`]: for programs that choose scene
-/// and method at run time.
+/// A [`Propagator`] of any scene, group and method, by [`Stepper::into_any`](crate::Stepper::into_any): for programs that choose them at run time.
 ///
-/// The stepper steps, runs and is read as an [`Integrator`]. A step costs one more indirect call. A state of another
-/// stepper on this group continues from its attitude and momentum.
+/// The stepper steps, runs and is recorded as an [`Integrator`], by states that are numbers. A clone is the same stepper, and
+/// costs nothing.
 ///
-/// A clone is the same stepper, and costs nothing.
-pub struct AnyStepper<G: LieGroup, A> {
-    stepper: Rc<dyn Integrator<Group = G, Advected = A, State = AnyState<G, A>>>,
-    start: Rc<Start<G, A>>,
-    cost: Cost,
+/// # Examples
+///
+/// ```
+/// use liestep::effects::RigidBody;
+/// use liestep::motion::Integrator as _;
+/// use liestep::{NonstandardInertia, SO3, Stepper};
+/// use nalgebra::Vector3;
+///
+/// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
+/// let stepper = Stepper::new(RigidBody { J_d }, 0.01)?.into_any();
+/// let mut state = stepper.start_at(SO3::identity(), Vector3::new(0.1, 2.0, 0.2))?;
+/// stepper.run(&mut state, 1000)?;
+/// assert_eq!((state.attitude().len(), state.momentum().len(), state.steps()), (9, 3, 1000));
+/// assert!((stepper.spatial_momentum(&state)[1] - 4.0).abs() < 1e-13);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone)]
+pub struct AnyStepper {
+    propagator: Rc<dyn Propagator>,
+    layout: Rc<Layout>,
 }
 
-/// The function that constructs a state from an attitude and a velocity.
-type Start<G, A> = dyn Fn(G, <G as LieGroup>::Vector) -> Result<AnyState<G, A>, SetupError>;
+impl AnyStepper {
+    /// A stepper of this propagator.
+    pub fn new(propagator: impl Propagator + 'static) -> Self {
+        let layout = Rc::new(propagator.layout().clone());
+        Self { propagator: Rc::new(propagator), layout }
+    }
 
-impl<G: LieGroup, A> Clone for AnyStepper<G, A> {
-    fn clone(&self) -> Self {
-        Self { stepper: Rc::clone(&self.stepper), start: Rc::clone(&self.start), cost: self.cost }
+    /// Names, units and places of a state's numbers.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// A state from the numbers of an attitude and of a velocity, as by [`Propagator::start`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Stepper::start`](crate::Stepper::start).
+    pub fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<AnyState, SetupError> {
+        self.propagator.start(attitude, velocity).map(|numbers| self.state(numbers))
+    }
+
+    /// A state from an attitude and a velocity of the group, as by [`Stepper::start`](crate::Stepper::start).
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Stepper::start`](crate::Stepper::start), and [`SetupError::Length`] for another group.
+    pub fn start_at<G: LieGroup<Scalar = f64>>(
+        &self,
+        attitude: G,
+        velocity: G::Vector,
+    ) -> Result<AnyState, SetupError> {
+        self.start(&numbers(&attitude.matrix()), &numbers(&velocity))
+    }
+
+    /// A state of these numbers; none if they are of another layout.
+    #[must_use]
+    pub fn state_of(&self, numbers: &[f64]) -> Option<AnyState> {
+        (numbers.len() == self.layout.state()).then(|| self.state(numbers.into()))
+    }
+
+    /// The momentum in space, `Ad*_{g⁻¹} μ`.
+    #[must_use]
+    pub fn spatial_momentum(&self, motion: &AnyMotion) -> Vec<f64> {
+        let mut momentum = vec![0.0; self.layout.components()];
+        self.propagator.spatial_momentum(&motion.numbers, &mut momentum);
+        momentum
+    }
+
+    /// The motion of these numbers after this many steps.
+    #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
+    pub(super) fn motion_of(&self, mut numbers: Box<[f64]>, steps: u64) -> AnyMotion {
+        if let Some(last) = numbers.last_mut() {
+            *last = steps as f64;
+        }
+        AnyMotion { numbers, layout: Rc::clone(&self.layout) }
+    }
+
+    fn state(&self, numbers: Box<[f64]>) -> AnyState {
+        AnyState(AnyMotion { numbers, layout: Rc::clone(&self.layout) })
+    }
+}
+
+impl Debug for AnyStepper {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("AnyStepper").field("layout", &self.layout).finish_non_exhaustive()
     }
 }
 
 /// The state of an [`AnyStepper`].
-pub type AnyState<G, A> = State<G, A, AnyHistory>;
-
-/// The memory of any method.
-#[doc(hidden)]
-pub struct AnyHistory(Box<dyn AnyMemory>);
-
-trait AnyMemory: Any + Debug {
-    fn copied(&self) -> Box<dyn AnyMemory>;
-    fn equals(&self, other: &dyn AnyMemory) -> bool;
-}
-
-impl<K: Any + Clone + Debug + PartialEq> AnyMemory for K {
-    fn copied(&self) -> Box<dyn AnyMemory> {
-        Box::new(self.clone())
-    }
-
-    fn equals(&self, other: &dyn AnyMemory) -> bool {
-        (other as &dyn Any).downcast_ref::<K>() == Some(self)
-    }
-}
-
-impl AnyHistory {
-    fn of(kept: impl AnyMemory) -> Self {
-        Self(Box::new(kept))
-    }
-}
-
-impl Clone for AnyHistory {
-    fn clone(&self) -> Self {
-        // Dereferenced explicitly, because the box implements `AnyMemory`, too.
-        Self(self.0.as_ref().copied())
-    }
-}
-
-impl PartialEq for AnyHistory {
-    fn eq(&self, other: &Self) -> bool {
-        self.0.as_ref().equals(other.0.as_ref())
-    }
-}
-
-impl Debug for AnyHistory {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.as_ref().fmt(f)
-    }
-}
-
-/// The functions of an integrator around another. Its `change` steps the inner integrator, which reads a state as `own`
-/// and a motion as `seen`, and calls `shown` after each stretch.
-macro_rules! wraps {
-    ($self:ident, $inner:expr, $state:ident => $own:expr, $motion:ident: $type:ty, $seen:expr, $next:ident => $shown:expr) => {
-        fn step(&$self, state: &mut Self::State) -> Result<StepReport, StepError> {
-            $self.change(state, |own| $inner.step(own))
-        }
-
-        fn run(&$self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-            $self.change(state, |own| $inner.run(own, steps))
-        }
-
-        fn attempt(&$self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {
-            $self.change(state, |own| $inner.attempt(own, steps))
-        }
-
-        fn run_stretches(
-            &$self,
-            state: &mut Self::State,
-            steps: u64,
-            $next: &mut NextSteps<'_, Self::Group, Self::Advected>,
-        ) -> Result<u64, StepError> {
-            $self.change(state, |own| $inner.run_stretches(own, steps, $shown))
-        }
-
-        fn cost(&$self) -> Option<Cost> {
-            Integrator::cost(&$inner)
-        }
-
-        fn time(&$self, $state: &Self::State) -> G::Scalar {
-            $inner.time($own)
-        }
-
-        fn length(&$self, $state: &Self::State) -> Option<G::Scalar> {
-            $inner.length($own)
-        }
-
-        fn step_size(&$self) -> G::Scalar {
-            $inner.step_size()
-        }
-
-        fn velocity(&$self, $motion: $type) -> G::Vector {
-            $inner.velocity($seen)
-        }
-
-        fn energy(&$self, $motion: $type) -> G::Scalar {
-            $inner.energy($seen)
-        }
-
-        fn factored_inertia(&$self) -> Option<FactoredInertia<G>> {
-            $inner.factored_inertia()
-        }
-
-        fn velocity_and_energy(
-            &$self,
-            $motion: $type,
-            inertia: Option<&FactoredInertia<G>>,
-        ) -> (G::Vector, G::Scalar) {
-            $inner.velocity_and_energy($seen, inertia)
-        }
-    };
-}
-
-/// An integrator that erases the type of its state's memory.
-struct Erasure<I>(I);
-
-impl<I, G, A, K> Erasure<I>
-where
-    I: Integrator<Group = G, Advected = A, State = State<G, A, K>>,
-    G: LieGroup,
-    A: Advected<G>,
-    K: AnyMemory + Clone,
-{
-    /// The inner integrator's state. A memory of another method is useless to it, and a new one is initialised.
-    fn own(&self, state: &AnyState<G, A>) -> I::State {
-        if let Some(kept) = (state.kept.0.as_ref() as &dyn Any).downcast_ref::<K>() {
-            return State { motion: state.motion, kept: kept.clone(), elapsed: state.elapsed };
-        }
-        let mut own = self.0.adopt(&state.motion);
-        own.motion = self.0.seen(&seeing(&state.motion, ()));
-        own.elapsed = state.elapsed;
-        own
-    }
-
-    /// Applies `steps` to the inner state. The state is updated to the last step even after an error.
-    fn change<R>(&self, state: &mut AnyState<G, A>, steps: impl FnOnce(&mut I::State) -> R) -> R {
-        let mut own = self.own(state);
-        let made = steps(&mut own);
-        if own.steps != state.steps {
-            (state.motion, state.elapsed) = (own.motion, own.elapsed);
-            match (state.kept.0.as_mut() as &mut dyn Any).downcast_mut::<K>() {
-                Some(place) => *place = own.kept,
-                None => state.kept = AnyHistory::of(own.kept),
-            }
-        }
-        made
-    }
-}
-
-fn erased<G: LieGroup, A, K: AnyMemory>(state: State<G, A, K>) -> AnyState<G, A> {
-    State { motion: state.motion, kept: AnyHistory::of(state.kept), elapsed: state.elapsed }
-}
-
-impl<I, G, A, K> Integrator for Erasure<I>
-where
-    I: Integrator<Group = G, Advected = A, State = State<G, A, K>>,
-    G: LieGroup,
-    A: Advected<G>,
-    K: AnyMemory + Clone,
-{
-    type Group = G;
-    type Advected = A;
-    type State = AnyState<G, A>;
-
-    fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
-        self.0.part(&self.own(state), fraction)
-    }
-
-    fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
-        erased(self.0.adopt(motion))
-    }
-
-    fn seen(&self, motion: &Motion<G, ()>) -> Motion<G, A> {
-        self.0.seen(motion)
-    }
-
-    wraps!(self, self.0, state => &self.own(state), motion: &Motion<G, A>, motion, next => next);
-}
-
-/// # Wrap: a stepper of any type
-impl<S: Effect + 'static, P: Plan<S, Kept: 'static> + 'static> Stepper<S, P> {
-    /// Erases the scene and the method from the type.
-    #[must_use]
-    pub fn into_any(self) -> AnyStepper<Group<S>, S::Advected> {
-        let (cost, stepper) = (self.plan.cost(), Rc::new(Erasure(self)));
-        let start = Rc::clone(&stepper);
-        let start = Rc::new(move |attitude, velocity| start.0.start(attitude, velocity).map(erased));
-        AnyStepper { stepper, start, cost }
-    }
-}
-
-impl<G: LieGroup, A> AnyStepper<G, A> {
-    /// A state from an attitude and a velocity, as by [`Stepper::start`].
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`Stepper::start`].
-    pub fn start(&self, attitude: impl Into<G>, velocity: G::Vector) -> Result<AnyState<G, A>, SetupError> {
-        (self.start)(attitude.into(), velocity)
-    }
-
-    /// The cost of a step, as by [`Plan::cost`].
-    #[must_use]
-    pub fn cost(&self) -> Cost {
-        self.cost
-    }
-
-    #[allow(clippy::unused_self)] // by the form that `wraps` asks for
-    fn change<R>(&self, state: &mut AnyState<G, A>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
-        steps(state)
-    }
-}
-
-impl<G: LieGroup, A: Advected<G>> Integrator for AnyStepper<G, A> {
-    type Group = G;
-    type Advected = A;
-    type State = AnyState<G, A>;
-
-    fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, A>, StepError> {
-        self.stepper.part(state, fraction)
-    }
-
-    fn adopt(&self, motion: &Motion<G, A>) -> Self::State {
-        self.stepper.adopt(motion)
-    }
-
-    fn seen(&self, motion: &Motion<G, ()>) -> Motion<G, A> {
-        self.stepper.seen(motion)
-    }
-
-    wraps!(self, *self.stepper, state => state, motion: &Motion<G, A>, motion, next => next);
-}
-
-/// A stepper that hides the advected parameters: its memory contains them.
-struct WithoutAdvected<G: LieGroup, A>(AnyStepper<G, A>);
-
 #[derive(Clone, Debug, PartialEq)]
-struct HiddenState<A> {
-    advected: A,
-    kept: AnyHistory,
-}
+pub struct AnyState(AnyMotion);
 
-impl<G: LieGroup, A: Advected<G>> WithoutAdvected<G, A> {
-    #[allow(clippy::unused_self)] // by the form that `wraps` asks for
-    fn change<R>(&self, state: &mut State<G, (), HiddenState<A>>, steps: impl FnOnce(&mut AnyState<G, A>) -> R) -> R {
-        let kept = mem::replace(&mut state.kept.kept, AnyHistory::of(()));
-        let mut own = State { motion: seeing(&state.motion, state.kept.advected), kept, elapsed: state.elapsed };
-        let made = steps(&mut own);
-        *state = hidden(own);
-        made
+impl Deref for AnyState {
+    type Target = AnyMotion;
+
+    fn deref(&self) -> &AnyMotion {
+        &self.0
     }
 }
 
-fn hidden<G: LieGroup, A: Copy>(State { motion, kept, elapsed }: AnyState<G, A>) -> State<G, (), HiddenState<A>> {
-    State { motion: seeing(&motion, ()), kept: HiddenState { advected: motion.advected, kept }, elapsed }
+/// The motion of an [`AnyStepper`] at one time, as numbers that its layout names.
+#[derive(Clone, PartialEq)]
+pub struct AnyMotion {
+    numbers: Box<[f64]>,
+    layout: Rc<Layout>,
 }
 
-fn shown<G: LieGroup, A: Copy>(state: &State<G, (), HiddenState<A>>) -> AnyState<G, A> {
-    let HiddenState { advected, kept } = state.kept.clone();
-    State { motion: seeing(&state.motion, advected), kept, elapsed: state.elapsed }
-}
-
-impl<G: LieGroup, A: Advected<G>> Integrator for WithoutAdvected<G, A> {
-    type Group = G;
-    type Advected = ();
-    type State = State<G, (), HiddenState<A>>;
-
-    fn part(&self, state: &Self::State, fraction: G::Scalar) -> Result<Motion<G, ()>, StepError> {
-        Ok(seeing(&self.0.part(&shown(state), fraction)?, ()))
-    }
-
-    fn adopt(&self, motion: &Motion<G, ()>) -> Self::State {
-        hidden(self.0.adopt(&self.0.seen(motion)))
-    }
-
-    wraps!(
-        self, self.0, state => &shown(state), motion: &Motion<G, ()>, &self.0.seen(motion),
-        next => &mut |shown, time| next(&seeing(shown, ()), time)
-    );
-}
-
-impl<G: LieGroup, A: Advected<G> + 'static> AnyStepper<G, A> {
-    /// Erases the advected parameters from the type: for programs with steppers of different scenes in one collection.
-    ///
-    /// The steps are the same to the bit. The advected parameters of a motion without a memory are computed from its
-    /// attitude. So a [velocity](Integrator::velocity) and an [energy](Integrator::energy) that depend on them are the
-    /// same to rounding.
+impl AnyMotion {
+    /// The entries of the attitude, as the matrices of its factors row by row.
     #[must_use]
-    pub fn hiding_advected(self) -> AnyStepper<G, ()> {
-        let (start, cost) = (Rc::clone(&self.start), self.cost);
-        let start = Rc::new(move |attitude, velocity| start(attitude, velocity).map(hidden).map(erased));
-        AnyStepper { stepper: Rc::new(Erasure(WithoutAdvected(self))), start, cost }
+    pub fn attitude(&self) -> &[f64] {
+        &self.numbers[self.layout.attitude()]
+    }
+
+    /// The components of the momentum in the body frame.
+    #[must_use]
+    pub fn momentum(&self) -> &[f64] {
+        &self.numbers[self.layout.momentum()]
+    }
+
+    /// The numbers of the advected parameters.
+    #[must_use]
+    pub fn advected(&self) -> &[f64] {
+        &self.numbers[self.layout.advected()]
+    }
+
+    /// The number of steps since the start.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+    pub fn steps(&self) -> u64 {
+        self.numbers.last().map_or(0, |steps| *steps as u64)
+    }
+
+    /// All numbers of the state.
+    #[must_use]
+    pub fn numbers(&self) -> &[f64] {
+        &self.numbers
     }
 }
 
-impl<G: LieGroup, A> Debug for AnyStepper<G, A> {
+impl Debug for AnyMotion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("AnyStepper").finish_non_exhaustive()
+        f.debug_tuple("AnyMotion").field(&self.numbers).finish()
     }
+}
+
+impl Integrator for AnyStepper {
+    type Scalar = f64;
+    type Motion = AnyMotion;
+    type Velocity = Vec<f64>;
+    type Inertia = ();
+    type State = AnyState;
+
+    fn step(&self, state: &mut AnyState) -> Result<StepReport, StepError> {
+        self.propagator.step(&mut state.0.numbers)
+    }
+
+    fn run(&self, state: &mut AnyState, steps: u64) -> Result<u64, StepError> {
+        self.propagator.run(&mut state.0.numbers, steps)
+    }
+
+    fn run_stretches(
+        &self,
+        state: &mut AnyState,
+        steps: u64,
+        next: &mut dyn FnMut(&AnyMotion, f64) -> u64,
+    ) -> Result<u64, StepError> {
+        let mut motion = state.0.clone();
+        self.propagator.run_stretches(&mut state.0.numbers, steps, &mut |numbers, time| {
+            motion.numbers.copy_from_slice(numbers);
+            next(&motion, time)
+        })
+    }
+
+    fn part(&self, state: &AnyState, fraction: f64) -> Result<AnyMotion, StepError> {
+        self.propagator.part(&state.numbers, fraction).map(|numbers| self.state(numbers).0)
+    }
+
+    fn adopt(&self, motion: &AnyMotion) -> AnyState {
+        self.state(self.propagator.adopt(&motion.numbers))
+    }
+
+    fn steps(motion: &AnyMotion) -> u64 {
+        motion.steps()
+    }
+
+    fn cost(&self) -> Option<Cost> {
+        self.propagator.cost()
+    }
+
+    fn step_size(&self) -> f64 {
+        self.propagator.step_size()
+    }
+
+    fn time(&self, state: &AnyState) -> f64 {
+        self.propagator.time(&state.numbers)
+    }
+
+    fn length(&self, state: &AnyState) -> Option<f64> {
+        self.propagator.length(&state.numbers)
+    }
+
+    fn velocity(&self, motion: &AnyMotion) -> Vec<f64> {
+        let mut velocity = vec![0.0; self.layout.components()];
+        self.propagator.velocity(&motion.numbers, &mut velocity);
+        velocity
+    }
+
+    fn energy(&self, motion: &AnyMotion) -> f64 {
+        self.propagator.energy(&motion.numbers)
+    }
+
+    fn factors(&self) -> Vec<Factor> {
+        self.layout.factors.clone()
+    }
+
+    fn inertia(&self) {}
+
+    fn write(&self, motion: &AnyMotion, (): &(), attitude: &mut [f64], row: &mut [f64]) {
+        let (mut entries, mut columns, mut places) = (motion.attitude(), &mut *attitude, &mut *row);
+        for Factor { kind, .. } in &self.layout.factors {
+            let (own, other) = entries.split_at(kind.rows() * kind.rows());
+            let (written, behind) = columns.split_at_mut(kind.columns());
+            write_element(*kind, own, written);
+            let (here, rest) = places.split_at_mut(kind.columns());
+            here.copy_from_slice(written);
+            (entries, columns, places) = (other, behind, rest);
+        }
+        let components = self.layout.components();
+        let (velocity, behind) = places.split_at_mut(components);
+        self.propagator.velocity(&motion.numbers, velocity);
+        let (momentum, behind) = behind.split_at_mut(components);
+        momentum.copy_from_slice(motion.momentum());
+        behind[0] = self.propagator.energy(&motion.numbers);
+        behind[1] = self.propagator.defect(&motion.numbers);
+    }
+}
+
+/// Writes the columns of an element from the entries of its matrix.
+fn write_element(kind: FactorKind, entries: &[f64], columns: &mut [f64]) {
+    match kind {
+        FactorKind::Rotation => {
+            let _ = SO3::from_matrix_unchecked(Matrix3::from_row_slice(entries)).write_numbers(columns);
+        }
+        FactorKind::Translation(rows) => {
+            columns.iter_mut().enumerate().for_each(|(row, column)| *column = entries[row * rows + rows - 1]);
+        }
+        FactorKind::Matrix(_) => columns.copy_from_slice(entries),
+    }
+}
+
+/// The numbers of a value, in order.
+pub(super) fn numbers<E: Entries<f64>>(value: &E) -> Vec<f64> {
+    let mut numbers = Vec::new();
+    value.each(&mut |number| numbers.push(number));
+    numbers
+}
+
+/// The number of a type's entries.
+pub(super) fn length<E: Entries<f64>>() -> usize {
+    let mut length = 0;
+    E::from_entries(&mut || {
+        length += 1;
+        0.0
+    });
+    length
+}
+
+/// The value of these numbers; those that are missing are zero.
+pub(super) fn read<E: Entries<f64>>(numbers: &[f64]) -> E {
+    let mut numbers = numbers.iter();
+    E::from_entries(&mut || numbers.next().copied().unwrap_or_default())
 }

@@ -1,15 +1,16 @@
 //! The common interface of all integrators, for tools that work with every method.
 
 use alloc::boxed::Box;
+use alloc::vec::Vec;
 use core::ops::{ControlFlow, Deref};
 
 use crate::error::StepError;
-use crate::groups::{Advected, LieGroup};
-use crate::mechanics::FactoredInertia;
-use crate::motion::plan::{Cost, NextSteps};
+use crate::groups::LieGroup;
+use crate::groups::layout::Factor;
+use crate::motion::plan::Cost;
 use crate::motion::report::StepReport;
 use crate::motion::summation::Motion;
-use crate::numbers::{Entries as _, real};
+use crate::numbers::{Entries as _, Real, real};
 
 roots!();
 
@@ -19,12 +20,16 @@ roots!();
 /// Recording, events and frames are written for this trait, and so work with every method. Its methods are those of
 /// [`Stepper`](crate::Stepper), and two more for dense output: [`part`](Self::part) and [`state_at`](Self::state_at).
 pub trait Integrator {
-    /// The group.
-    type Group: LieGroup;
-    /// The advected parameters.
-    type Advected: Advected<Self::Group>;
+    /// The scalar.
+    type Scalar: Real;
+    /// The motion at one time: a [`Motion`] of a group, or the numbers of an [`AnyStepper`](crate::motion::AnyStepper).
+    type Motion: Clone;
+    /// The body velocity.
+    type Velocity;
+    /// The inertia by which the [rows](Self::write) of a table are written, factorised once for many motions.
+    type Inertia;
     /// The state: a motion, and the method's memory from step to step.
-    type State: Clone + Deref<Target = Motion<Self::Group, Self::Advected>>;
+    type State: Clone + Deref<Target = Self::Motion>;
 
     /// Makes one step; on an error the state is unchanged.
     ///
@@ -63,7 +68,7 @@ pub trait Integrator {
         &self,
         state: &mut Self::State,
         steps: u64,
-        next: &mut NextSteps<'_, Self::Group, Self::Advected>,
+        next: &mut dyn FnMut(&Self::Motion, Self::Scalar) -> u64,
     ) -> Result<u64, StepError> {
         run_or_step(self, state, steps, next)
     }
@@ -86,21 +91,13 @@ pub trait Integrator {
     /// # Errors
     ///
     /// The errors of [`Stepper::step`](crate::Stepper::step).
-    fn part(
-        &self,
-        state: &Self::State,
-        fraction: ScalarIn<Self>,
-    ) -> Result<Motion<Self::Group, Self::Advected>, StepError>;
+    fn part(&self, state: &Self::State, fraction: Self::Scalar) -> Result<Self::Motion, StepError>;
 
     /// A state with the attitude and momentum of another motion; see [`Stepper::adopt`](crate::Stepper::adopt).
-    fn adopt(&self, motion: &Motion<Self::Group, Self::Advected>) -> Self::State;
+    fn adopt(&self, motion: &Self::Motion) -> Self::State;
 
-    /// The motion with its advected parameters, computed from its attitude and its number of steps.
-    fn seen(&self, motion: &Motion<Self::Group, ()>) -> Motion<Self::Group, Self::Advected> {
-        let mut seen = *self.adopt(&seeing(motion, Self::Advected::from_entries(&mut || real(0.0))));
-        seen.steps = motion.steps;
-        seen
-    }
+    /// The number of steps up to a motion.
+    fn steps(motion: &Self::Motion) -> u64;
 
     /// The approximate number of operations of a step; `None` if it isn't known.
     fn cost(&self) -> Option<Cost> {
@@ -108,46 +105,39 @@ pub trait Integrator {
     }
 
     /// The step `h`, s; if steps vary, their unit.
-    fn step_size(&self) -> ScalarIn<Self>;
+    fn step_size(&self) -> Self::Scalar;
 
     /// The body velocity, on SO(3) in rad/s; NaN if no velocity has this momentum, see
     /// [`Stepper::velocity`](crate::Stepper::velocity).
-    fn velocity(&self, motion: &Motion<Self::Group, Self::Advected>) -> <Self::Group as LieGroup>::Vector;
+    fn velocity(&self, motion: &Self::Motion) -> Self::Velocity;
 
     /// The energy, J; NaN if no velocity has this momentum.
-    fn energy(&self, motion: &Motion<Self::Group, Self::Advected>) -> ScalarIn<Self>;
+    fn energy(&self, motion: &Self::Motion) -> Self::Scalar;
 
-    /// The factorised inertia, on SO(3) of kg m², if it is the same for all motions, so that
-    /// [`velocity_and_energy`](Self::velocity_and_energy) of many motions needn't factorise it again; `None` if it
-    /// varies or isn't known.
-    fn factored_inertia(&self) -> Option<FactoredInertia<Self::Group>> {
-        None
-    }
+    /// The factors of the group, by which the columns of a table are named.
+    fn factors(&self) -> Vec<Factor>;
 
-    /// The [velocity](Self::velocity), on SO(3) in rad/s, and the [energy](Self::energy), J, to the bit, without
-    /// computing common terms twice.
+    /// The inertia for [`write`](Self::write), factorised if it is the same for all motions.
+    fn inertia(&self) -> Self::Inertia;
+
+    /// Writes a row of a table without its time: the columns of the attitude, the components of velocity and momentum, the
+    /// energy and the distance from the group. `attitude` has the attitude's columns of the row before, or zeros, and gets
+    /// those of this one: a quaternion has the sign that is nearer to the one before.
     ///
-    /// `inertia` is this integrator's [`factored_inertia`](Self::factored_inertia), which may be computed once for many
-    /// motions; with that of another integrator the results are wrong. `None` solves with the inertia for each motion
-    /// anew.
-    fn velocity_and_energy(
-        &self,
-        motion: &Motion<Self::Group, Self::Advected>,
-        inertia: Option<&FactoredInertia<Self::Group>>,
-    ) -> (<Self::Group as LieGroup>::Vector, ScalarIn<Self>) {
-        let _ = inertia;
-        (self.velocity(motion), self.energy(motion))
-    }
+    /// `inertia` is this integrator's [`inertia`](Self::inertia); with that of another the numbers are wrong.
+    fn write(&self, motion: &Self::Motion, inertia: &Self::Inertia, attitude: &mut [Self::Scalar], row: &mut [f64])
+    where
+        Self::Scalar: Into<f64>;
 
     /// The time since the start, s: `n h` if all steps have the length `h`.
     #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
-    fn time(&self, state: &Self::State) -> ScalarIn<Self> {
-        self.step_size() * real(state.steps as f64)
+    fn time(&self, state: &Self::State) -> Self::Scalar {
+        self.step_size() * real(Self::steps(state) as f64)
     }
 
     /// The length of the next step, s, not finite if there is none; `None` if all steps have the length
     /// [`step_size`](Self::step_size).
-    fn length(&self, _state: &Self::State) -> Option<ScalarIn<Self>> {
+    fn length(&self, _state: &Self::State) -> Option<Self::Scalar> {
         None
     }
 
@@ -176,22 +166,23 @@ pub trait Integrator {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // checked
-    fn state_at(&self, state: &Self::State, time: f64) -> Result<Motion<Self::Group, Self::Advected>, StepError>
+    fn state_at(&self, state: &Self::State, time: f64) -> Result<Self::Motion, StepError>
     where
-        ScalarIn<Self>: Into<f64>,
+        Self::Scalar: Into<f64>,
     {
         /// A larger number of steps isn't exact in a double, and no run is that long.
         const MOST: f64 = 9e15;
         let h: f64 = self.step_size().into();
         if h == 0.0 && time.is_finite() {
-            return Ok(**state);
+            return Ok((**state).clone());
         }
         if self.length(state).is_some() {
             return ahead(self, state.clone(), time);
         }
         let now: f64 = self.time(state).into();
-        let elapsed = now - h * state.steps as f64;
-        let steps = (time - elapsed) / h - state.steps as f64;
+        let counted = Self::steps(state) as f64;
+        let elapsed = now - h * counted;
+        let steps = (time - elapsed) / h - counted;
         let can_be_counted = steps.abs() < MOST;
         if !can_be_counted {
             return Err(StepError::NonFinite { what: "time" });
@@ -209,9 +200,44 @@ pub trait Integrator {
     }
 }
 
-/// The motion with other advected parameters.
-pub(super) fn seeing<G: LieGroup, A, B>(motion: &Motion<G, A>, advected: B) -> Motion<G, B> {
-    Motion { attitude: motion.attitude, momentum: motion.momentum, advected, steps: motion.steps }
+/// Writes a row of a table, as [`Integrator::write`]; `numbers` has those of the attitude before.
+#[hot]
+pub(crate) fn write_row<G, A>(
+    motion: &Motion<G, A>,
+    (velocity, energy): (G::Vector, G::Scalar),
+    numbers: &mut [G::Scalar],
+    row: &mut [f64],
+) where
+    G: LieGroup<Scalar: Into<f64>>,
+{
+    let behind = match (<&mut [_; 4]>::try_from(&mut *numbers), row.split_first_chunk_mut()) {
+        // The compiler knows the length of four numbers, those of a quaternion, which makes this faster.
+        (Ok(numbers), Some((places, behind))) => {
+            motion.attitude.write_numbers(numbers);
+            *places = numbers.map(Into::into);
+            behind
+        }
+        _ => write_attitude(&motion.attitude, numbers, row),
+    };
+    let mut places = behind[..2 * G::DIMENSION + 2].iter_mut();
+    let mut write = |number: G::Scalar| places.next().map_or((), |place| *place = number.into());
+    velocity.each(&mut write);
+    motion.momentum.each(&mut write);
+    write(energy);
+    write(motion.attitude.defect());
+}
+
+/// Writes the numbers of an attitude over those of the row before and into a row; returns the rest of the row.
+#[inline(never)]
+fn write_attitude<'a, G: LieGroup<Scalar: Into<f64>>>(
+    attitude: &G,
+    numbers: &mut [G::Scalar],
+    row: &'a mut [f64],
+) -> &'a mut [f64] {
+    attitude.write_numbers(numbers);
+    let (places, behind) = row.split_at_mut(numbers.len());
+    places.iter_mut().zip(numbers).for_each(|(place, number)| *place = (*number).into());
+    behind
 }
 
 /// [`Integrator::run_stretches`] by runs, and by single steps if a run fails.
@@ -219,7 +245,7 @@ pub(super) fn run_or_step<I: Integrator + ?Sized>(
     integrator: &I,
     state: &mut I::State,
     mut steps: u64,
-    next: &mut NextSteps<'_, I::Group, I::Advected>,
+    next: &mut dyn FnMut(&I::Motion, I::Scalar) -> u64,
 ) -> Result<u64, StepError> {
     let mut iterations = 0;
     while steps > 0 {
@@ -237,9 +263,9 @@ pub(super) fn run_or_step<I: Integrator + ?Sized>(
 }
 
 /// [`Integrator::state_at`] for steps of varying length.
-fn ahead<I>(integrator: &I, mut state: I::State, time: f64) -> Result<Motion<I::Group, I::Advected>, StepError>
+fn ahead<I>(integrator: &I, mut state: I::State, time: f64) -> Result<I::Motion, StepError>
 where
-    I: Integrator<Group: LieGroup<Scalar: Into<f64>>> + ?Sized,
+    I: Integrator<Scalar: Into<f64>> + ?Sized,
 {
     if !time.is_finite() {
         return Err(StepError::NonFinite { what: "time" });
@@ -259,17 +285,14 @@ where
     }
 }
 
-/// The scalar of an integrator.
-pub type ScalarIn<I> = <<I as Integrator>::Group as LieGroup>::Scalar;
-
 /// A motion at a time, at the end of a step or between two, with its integrator.
 ///
 /// The motion's methods are available by `Deref` to [`Motion`].
 #[derive(Debug)]
 pub struct Moment<'a, I: Integrator + ?Sized> {
     integrator: &'a I,
-    motion: &'a Motion<I::Group, I::Advected>,
-    time: ScalarIn<I>,
+    motion: &'a I::Motion,
+    time: I::Scalar,
     rising: Option<bool>,
 }
 
@@ -281,31 +304,32 @@ impl<'a, I: Integrator + ?Sized> Moment<'a, I> {
     }
 
     /// The moment of a motion at any time, s.
-    pub(crate) fn at(
-        integrator: &'a I,
-        motion: &'a Motion<I::Group, I::Advected>,
-        time: ScalarIn<I>,
-        rising: Option<bool>,
-    ) -> Self {
+    pub(crate) fn at(integrator: &'a I, motion: &'a I::Motion, time: I::Scalar, rising: Option<bool>) -> Self {
         Self { integrator, motion, time, rising }
     }
 
     /// The time since the start, s.
     #[must_use]
-    pub fn time(&self) -> ScalarIn<I> {
+    pub fn time(&self) -> I::Scalar {
         self.time
     }
 
     /// The body velocity, on SO(3) in rad/s.
     #[must_use]
-    pub fn velocity(&self) -> <I::Group as LieGroup>::Vector {
+    pub fn velocity(&self) -> I::Velocity {
         self.integrator.velocity(self.motion)
     }
 
     /// The energy, J.
     #[must_use]
-    pub fn energy(&self) -> ScalarIn<I> {
+    pub fn energy(&self) -> I::Scalar {
         self.integrator.energy(self.motion)
+    }
+
+    /// The number of steps up to the motion.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        I::steps(self.motion)
     }
 
     /// The integrator of the motion.
@@ -322,9 +346,9 @@ impl<'a, I: Integrator + ?Sized> Moment<'a, I> {
 }
 
 impl<I: Integrator + ?Sized> Deref for Moment<'_, I> {
-    type Target = Motion<I::Group, I::Advected>;
+    type Target = I::Motion;
 
-    fn deref(&self) -> &Self::Target {
+    fn deref(&self) -> &I::Motion {
         self.motion
     }
 }

@@ -3,7 +3,7 @@
 use core::fmt::Debug;
 
 use crate::motion::state::ElapsedTime;
-use crate::numbers::{Coordinates, History, Real, replaced};
+use crate::numbers::{Coordinates, History, Polynomial, Real, replaced};
 use crate::solving::{Guess, WarmStart};
 
 /// The memory of a [`Plan`](crate::motion::Plan) from step to step, as numbers for a checkpoint.
@@ -74,6 +74,16 @@ impl<T: Real, V: Coordinates<T>, H: History<T, V>> Kept<T> for WarmStart<V, H> {
     }
 }
 
+impl<T: Real, V: Coordinates<T>> Kept<T> for Polynomial<V> {
+    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
+        History::with_numbers(self, number)
+    }
+
+    fn scaled(&self, ratio: T) -> Self {
+        History::scaled(self, ratio)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::Kept as _;
@@ -87,7 +97,7 @@ mod tests {
     /// A memory from half the increment, a guess, the number of increments, and their differences.
     fn read(increments: f64) -> Option<Memory> {
         let mut numbers = [1.0, 2.0, 3.0, 4.0, increments].into_iter().chain((0..14).map(f64::from));
-        Memory::of(Vector2::zeros(), true).with_numbers(&mut |_| numbers.next().unwrap())
+        Memory::of(Vector2::zeros()).with_numbers(&mut |_| numbers.next().unwrap())
     }
 
     #[test]
@@ -98,7 +108,7 @@ mod tests {
         assert_eq!(read(0.0).unwrap().with_numbers(&mut |_| again.next().unwrap()), read(3.0));
         assert_eq!((numbers.len(), again.next()), (19, None));
         let mut three = numbers[..6].iter().copied();
-        let short = WarmStart::<Vector2<f64>>::of(Vector2::zeros(), false);
+        let short = WarmStart::<Vector2<f64>>::of(Vector2::zeros());
         let short = short.with_numbers(&mut |_| three.next().unwrap()).unwrap();
         let mut again = Vec::new();
         short.each(&mut |number| again.push(number));

@@ -5,6 +5,16 @@
 //! [`methods`](crate::methods), and wrappers of plans in [`with`](crate::with). A [`RightHandSide`] is the continuous
 //! motion, for an ODE solver of another library. Every method is an [`Integrator`], by which a motion is read between
 //! its steps, and [recorded and stopped](crate::recording).
+//!
+//! # The seam
+//!
+//! Below are types: scene, group, method and scalar of a [`Stepper`], which one compiled step knows. Above are values: an
+//! [`AnyStepper`] holds a [`Propagator`], and its states are numbers, which a [`Layout`] names. Files, Python and ensembles
+//! stand above and know neither the group nor the method. A stepper crosses by [`Stepper::into_any`], and its states get a
+//! type again by [`AnyStepper::on_group`].
+//!
+//! Two invariants: a state that crosses the seam and comes back has the same bits, its memory included; and an error
+//! leaves the numbers as they were.
 
 // The first module, because its page comes first in the documentation.
 mod stepper;
@@ -14,10 +24,12 @@ mod batch;
 mod declared;
 #[macro_use]
 mod delegated;
+mod erasure;
 mod flows;
 mod increment;
 mod integrator;
 mod kept;
+mod on_group;
 mod plan;
 mod propagator;
 mod report;
@@ -25,16 +37,19 @@ mod right_hand_side;
 mod state;
 mod summation;
 
-pub use any::{AnyHistory, AnyState, AnyStepper};
+pub use crate::groups::layout::{Factor, FactorKind};
+pub use any::{AnyMotion, AnyState, AnyStepper};
 pub use batch::{Batch, Batchable};
 pub use declared::OwnStep;
 pub(crate) use declared::{beyond_solvable, half_coordinates};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
 pub use increment::Increment;
-pub use integrator::{Answer, Integrator, Moment, ScalarIn};
+pub(crate) use integrator::write_row;
+pub use integrator::{Answer, Integrator, Moment};
 pub use kept::Kept;
+pub use on_group::{GroupState, GroupStepper};
 pub use plan::{Cost, NextSteps, Plan, Steerable, Variable};
-pub use propagator::{Factor, FactorKind, Layout, Propagator};
+pub use propagator::{Layout, Propagator};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;
 #[doc(hidden)]

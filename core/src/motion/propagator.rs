@@ -7,6 +7,8 @@ use alloc::vec::Vec;
 use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
+use crate::groups::layout::Factor;
+use crate::motion::plan::Cost;
 use crate::motion::report::StepReport;
 
 /// A scene, a method and a step `h` as one value, whose states are slices of numbers.
@@ -46,6 +48,35 @@ pub trait Propagator {
     /// The errors of [`Stepper::run`](crate::Stepper::run).
     fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError>;
 
+    /// A run in stretches: `steps` steps first, then each time as many as `next` returns for the state reached and its time,
+    /// s, until it returns 0; returns the number of all iterations. The memory in the states of `next` may be an older one.
+    ///
+    /// If a step fails, the run ends with the error, and the state is that before the failed step.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Stepper::step`](crate::Stepper::step), for the step that has no solution.
+    fn run_stretches(
+        &self,
+        state: &mut [f64],
+        mut steps: u64,
+        next: &mut dyn FnMut(&[f64], f64) -> u64,
+    ) -> Result<u64, StepError> {
+        let mut iterations = 0;
+        while steps > 0 {
+            match self.run(state, steps) {
+                Ok(spent) => iterations += spent,
+                Err(_) => {
+                    for _ in 0..steps {
+                        iterations += u64::from(self.step(state)?.iterations);
+                    }
+                }
+            }
+            steps = next(state, self.time(state));
+        }
+        Ok(iterations)
+    }
+
     /// The state a fraction of a step after this one, with the number of steps of this one; its memory is that of a new
     /// start.
     ///
@@ -53,6 +84,15 @@ pub trait Propagator {
     ///
     /// The errors of [`Stepper::step`](crate::Stepper::step).
     fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError>;
+
+    /// A state at the attitude and momentum of another one, also of another method, whose time and memory begin here; NaN if
+    /// that is too short.
+    fn adopt(&self, state: &[f64]) -> Box<[f64]>;
+
+    /// The approximate number of operations of a step; `None` if it isn't known.
+    fn cost(&self) -> Option<Cost> {
+        None
+    }
 
     /// The step `h`, s; if steps vary, their unit.
     fn step_size(&self) -> f64;
@@ -90,37 +130,6 @@ pub struct Layout {
     pub advected: Vec<String>,
     /// The number of entries of the memory of the method.
     pub memory: usize,
-}
-
-/// A factor of the group: its kind, and the names of its components.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Factor {
-    /// The kind of its elements.
-    pub kind: FactorKind,
-    /// The component names with the units of a velocity and of a momentum, such as `x`, `rad/s` and `kg m²/s`.
-    pub components: Vec<(String, [&'static str; 2])>,
-}
-
-/// The kind of a group's elements, by which a recorded attitude is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FactorKind {
-    /// SO(3): a matrix of three rows in a state, a quaternion in a table.
-    Rotation,
-    /// Translations, as homogeneous matrices of this many rows in a state, and coordinates in a table.
-    Translation(usize),
-    /// Matrices of this many rows.
-    Matrix(usize),
-}
-
-impl FactorKind {
-    /// The number of rows of a matrix.
-    #[must_use]
-    pub const fn rows(self) -> usize {
-        match self {
-            Self::Rotation => 3,
-            Self::Translation(rows) | Self::Matrix(rows) => rows,
-        }
-    }
 }
 
 impl Layout {

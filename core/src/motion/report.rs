@@ -4,10 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepReport {
     /// A measure of the work: Newton iterations, those of the slowest lane, summed over all stages.
-    ///
-    /// If the [Jacobian is expensive](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE), evaluations of the residual
-    /// count, too: up to eight, and the iterations with the Jacobian if these weren't enough. A solve whose first guess
-    /// failed counts more than 20.
+    /// A solve whose first guess failed counts more than 20.
     pub iterations: u32,
     /// The remedy that replaced this step; only with [`or_substeps`](crate::Stepper::or_substeps).
     pub remedy: Option<Remedy>,

@@ -2,13 +2,12 @@
 
 use core::fmt::Debug;
 
-use crate::numbers::{Coordinates, Real, count, counted, flag, replaced};
+use crate::numbers::{Coordinates, Real, count, counted, replaced};
 
 /// The memory of an extrapolation from values at equal times.
 pub trait History<T: Real, V: Coordinates<T>>: Copy + Debug + PartialEq {
-    /// The history before the first value. [`Either`] is the polynomial if an iteration is expensive, and the parabola
-    /// otherwise.
-    fn none(is_expensive: bool) -> Self;
+    /// The history before the first value.
+    fn none() -> Self;
 
     /// Records the value `y` after `last`, and returns the extrapolated next one.
     fn next(&mut self, last: V, y: V) -> V;
@@ -37,7 +36,7 @@ pub struct Parabola<V> {
 }
 
 impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
-    fn none(_: bool) -> Self {
+    fn none() -> Self {
         Self { difference: V::zero() }
     }
 
@@ -69,7 +68,7 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Parabola<V> {
 const DIFFERENCES: usize = 7;
 
 /// The polynomial through all known values `y`, stored as the backward differences `∇ y, ∇² y, …`, for expensive
-/// iterations.
+/// iterations and smooth motions.
 #[derive(Clone, Copy, Debug, PartialEq, Lanes)]
 pub struct Polynomial<V> {
     differences: [V; DIFFERENCES],
@@ -79,7 +78,7 @@ pub struct Polynomial<V> {
 }
 
 impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
-    fn none(_: bool) -> Self {
+    fn none() -> Self {
         Self { differences: [V::zero(); DIFFERENCES], values: 0 }
     }
 
@@ -109,42 +108,6 @@ impl<T: Real, V: Coordinates<T>> History<T, V> for Polynomial<V> {
     }
 }
 
-/// The parabola or the polynomial, chosen at run time.
-#[derive(Clone, Copy, Debug, PartialEq, Lanes)]
-pub struct Either<V> {
-    #[shared]
-    is_long: bool,
-    parabola: Parabola<V>,
-    polynomial: Polynomial<V>,
-}
-
-impl<T: Real, V: Coordinates<T>> History<T, V> for Either<V> {
-    fn none(is_expensive: bool) -> Self {
-        let (parabola, polynomial) = (Parabola::none(is_expensive), Polynomial::none(is_expensive));
-        Self { is_long: is_expensive, parabola, polynomial }
-    }
-
-    #[hot]
-    fn next(&mut self, last: V, y: V) -> V {
-        if self.is_long { self.polynomial.next(last, y) } else { self.parabola.next(last, y) }
-    }
-
-    fn forget_the_estimate(&mut self) {
-        // The polynomial hasn't used the estimate.
-        self.parabola = Parabola::none(self.is_long);
-    }
-
-    fn with_numbers(&self, number: &mut dyn FnMut(T) -> T) -> Option<Self> {
-        let is_long = flag(self.is_long, number)?;
-        let parabola = self.parabola.with_numbers(number)?;
-        Some(Self { is_long, parabola, polynomial: self.polynomial.with_numbers(number)? })
-    }
-
-    fn scaled(&self, ratio: T) -> Self {
-        Self { parabola: self.parabola.scaled(ratio), polynomial: self.polynomial.scaled(ratio), ..*self }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::{DIFFERENCES, History as _, Parabola, Polynomial};
@@ -156,7 +119,7 @@ mod tests {
     fn a_polynomial_is_continued() {
         let errors = [DIFFERENCES, DIFFERENCES + 1].map(|degree| {
             let value = |i: i32| Vector1::new((0.1 * f64::from(i)).powi(i32::try_from(degree).unwrap()));
-            let mut history = Polynomial::none(true);
+            let mut history = Polynomial::none();
             let (mut last, mut guess) = (value(0), value(0));
             for i in 0..20 {
                 guess = history.next(last, value(i));
@@ -175,7 +138,7 @@ mod tests {
                 let i = f64::from(i);
                 Vector1::new(3.0 - 2.0 * i + 5.0 * i * i + cubic * i * i * i)
             };
-            let mut history = Parabola::none(false);
+            let mut history = Parabola::none();
             let guesses: Vec<_> = (1..6).map(|i| history.next(value(i - 1), value(i))).collect();
             for (i, guess) in (2..).zip(&guesses).skip(1) {
                 assert_eq!(value(i) - guess, Vector1::new(missing), "increment {i}");
@@ -186,7 +149,7 @@ mod tests {
     /// The extrapolation begins with a constant, then a line, a parabola and so on.
     #[test]
     fn it_starts_with_what_there_is() {
-        let mut history = Polynomial::none(true);
+        let mut history = Polynomial::none();
         let nothing = Vector1::new(100.0);
         assert_eq!(history.next(nothing, Vector1::new(1.0)), Vector1::new(1.0));
         assert_eq!(history.next(Vector1::new(1.0), Vector1::new(4.0)), Vector1::new(7.0));

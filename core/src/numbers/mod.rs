@@ -45,7 +45,7 @@ pub(crate) use dual::{Dual, Number};
 pub use entries::Entries;
 pub(crate) use entries::{entries_of_value, flag, of_tuples, replaced, sum, zero};
 pub(crate) use exact::{carried_sum, two_square, two_sum};
-pub(crate) use history::{Either, History, Parabola, Polynomial};
+pub(crate) use history::{History, Parabola, Polynomial};
 pub use join::{Join, Twice};
 pub use lanes::{InLanes, Lanes, Numbers};
 pub(crate) use newton::{NewtonEnd, newton_halving};

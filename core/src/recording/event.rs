@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::crossing::{Looks, side, zeros};
 use super::error::{Reason, RunError, RunReport};
 use super::observer::{Observer, show};
-use crate::motion::{Integrator, Moment, Motion, ScalarIn};
+use crate::motion::{Integrator, Moment};
 use crate::numbers::{real, reported};
 
 /// The kind of an event: the direction in which a function of the motion crosses zero, whether that ends the run, and a
@@ -97,7 +97,7 @@ pub(super) struct Crossing<I: Integrator> {
     fraction: f64,
     pub(super) time: f64,
     rising: bool,
-    motion: Motion<I::Group, I::Advected>,
+    motion: I::Motion,
 }
 
 impl<'a, I: Integrator> Watch<'a, I> {
@@ -122,7 +122,7 @@ pub(super) fn look_first<I: Integrator>(watches: &mut [Watch<'_, I>], now: &Mome
 }
 
 /// The length of the step from this state.
-pub(super) fn next_length<I: Integrator>(integrator: &I, state: &I::State) -> ScalarIn<I> {
+pub(super) fn next_length<I: Integrator>(integrator: &I, state: &I::State) -> I::Scalar {
     integrator.length(state).unwrap_or_else(|| integrator.step_size())
 }
 

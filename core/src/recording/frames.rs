@@ -4,7 +4,7 @@ use core::fmt;
 
 use super::event::next_length;
 use crate::error::StepError;
-use crate::motion::{Integrator, Motion, ScalarIn};
+use crate::motion::Integrator;
 use crate::numbers::real;
 
 roots!();
@@ -55,7 +55,7 @@ const MOST_STEPS: u64 = 1000;
 
 impl<I: Integrator> Frames<I>
 where
-    ScalarIn<I>: Into<f64>,
+    I::Scalar: Into<f64>,
 {
     /// The frames of the motion from this state.
     pub fn new(integrator: I, state: I::State) -> Self {
@@ -78,7 +78,7 @@ where
     ///
     /// [`StepError`] if a step fails. The state is then the last one before it, and the time of the frame is lost.
     #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // bounded
-    pub fn advance(&mut self, elapsed: f64) -> Result<Motion<I::Group, I::Advected>, StepError> {
+    pub fn advance(&mut self, elapsed: f64) -> Result<I::Motion, StepError> {
         if self.integrator.length(&self.state).is_some() {
             return self.advance_by_lengths(elapsed.max(0.0));
         }
@@ -97,7 +97,7 @@ where
     }
 
     /// [`advance`](Self::advance) for steps of varying length.
-    fn advance_by_lengths(&mut self, mut elapsed: f64) -> Result<Motion<I::Group, I::Advected>, StepError> {
+    fn advance_by_lengths(&mut self, mut elapsed: f64) -> Result<I::Motion, StepError> {
         let (mut left, mut made) = (core::mem::replace(&mut self.left, 0.0), 0);
         loop {
             let h = next_length(&self.integrator, &self.state).into().abs();
@@ -131,6 +131,9 @@ where
 
 impl<I: Integrator> fmt::Debug for Frames<I> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Frames").field("steps", &self.state.steps).field("left", &self.left).finish_non_exhaustive()
+        f.debug_struct("Frames")
+            .field("steps", &I::steps(&self.state))
+            .field("left", &self.left)
+            .finish_non_exhaustive()
     }
 }

@@ -9,10 +9,8 @@ use alloc::vec::Vec;
 use core::fmt;
 use thiserror::Error;
 
-use crate::groups::LieGroup;
-use crate::mechanics::FactoredInertia;
-use crate::motion::{Integrator, Moment, ScalarIn};
-use crate::numbers::{Entries as _, real};
+use crate::motion::{Factor, Integrator, Moment};
+use crate::numbers::real;
 
 /// A column of a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,6 +19,25 @@ pub struct Column {
     pub name: String,
     /// Unit of the numbers; empty if there is none or if it depends on the declaration.
     pub unit: String,
+}
+
+impl Column {
+    /// The columns of a motion on a group of these factors: the time, the attitude, velocity, momentum, energy and the
+    /// distance from the group.
+    #[must_use]
+    pub fn of_motions(factors: &[Factor]) -> Vec<Self> {
+        let components = || factors.iter().flat_map(|factor| &factor.components);
+        let named = |quantity: &'static str, which: usize| {
+            components().map(move |(name, units)| (format!("{quantity}_{name}"), units[which]))
+        };
+        // The unit of a velocity times a momentum.
+        let energy = if components().all(|(_, units)| *units == ["rad/s", "kg m²/s"]) { "J" } else { "" };
+        let attitude = factors.iter().flat_map(Factor::columns);
+        let columns = [("t".to_owned(), "s")].into_iter().chain(attitude);
+        let columns = columns.chain(named("velocity", 0)).chain(named("momentum", 1));
+        let columns = columns.chain([("energy".to_owned(), energy), ("defect".to_owned(), "1")]);
+        columns.map(|(name, unit)| Self { name, unit: unit.to_owned() }).collect()
+    }
 }
 
 /// An error of a sink.
@@ -113,10 +130,10 @@ const ROWS_IN_A_BLOCK: usize = 1024;
 /// reports it. After an error nothing more is written to the sink, and it isn't ended.
 pub struct Recorder<'a, I: Integrator, S: Sink> {
     columns: Vec<Column>,
-    shows_motion: bool,
-    /// The numbers of the attitude in the row before.
-    attitude: Vec<ScalarIn<I>>,
-    inertia: Option<FactoredInertia<I::Group>>,
+    /// The columns of the attitude in the row before.
+    attitude: Vec<I::Scalar>,
+    /// The inertia by which motions are written; none where they aren't.
+    inertia: Option<I::Inertia>,
     quantities: Vec<Quantity<'a, I>>,
     /// The current block, of which `filled` numbers are recorded.
     block: Vec<f64>,
@@ -145,24 +162,16 @@ enum Stage {
 impl<'a, I, S> Recorder<'a, I, S>
 where
     I: Integrator,
-    ScalarIn<I>: Into<f64>,
+    I::Scalar: Into<f64>,
     S: Sink,
 {
     /// A recorder of all columns above, for motions of this integrator.
     pub fn new(integrator: &I, sink: S) -> Self {
         let mut recorder = Self::bare(integrator, sink);
-        let (attitude, components) = (I::Group::named_numbers(), I::Group::named_components());
-        recorder.attitude = vec![real(0.0); attitude.len()];
-        recorder.inertia = integrator.factored_inertia();
-        recorder.shows_motion = true;
-        let named = |quantity: &'static str, which: usize| {
-            components.iter().map(move |(name, units)| (format!("{quantity}_{name}"), units[which]))
-        };
-        // The unit of a velocity times a momentum.
-        let energy = if components.iter().all(|(_, units)| *units == ["rad/s", "kg m²/s"]) { "J" } else { "" };
-        let columns = attitude.into_iter().chain(named("velocity", 0)).chain(named("momentum", 1));
-        let columns = columns.chain([("energy".to_owned(), energy), ("defect".to_owned(), "1")]);
-        recorder.columns.extend(columns.map(|(name, unit)| Column { name, unit: unit.to_owned() }));
+        let factors = integrator.factors();
+        recorder.attitude = vec![real(0.0); factors.iter().map(|factor| factor.kind.columns()).sum()];
+        recorder.inertia = Some(integrator.inertia());
+        recorder.columns = Column::of_motions(&factors);
         recorder
     }
 
@@ -170,7 +179,6 @@ where
     pub fn bare(_: &I, sink: S) -> Self {
         Self {
             columns: vec![Column { name: "t".to_owned(), unit: "s".to_owned() }],
-            shows_motion: false,
             attitude: Vec::new(),
             inertia: None,
             quantities: Vec::new(),
@@ -232,23 +240,8 @@ where
         }
         let Some((time, own)) = self.block[self.filled..end].split_first_mut() else { return Err(unreachable()) };
         *time = now.time().into();
-        if self.shows_motion {
-            let behind = match (<&mut [_; 4]>::try_from(self.attitude.as_mut_slice()), own.split_first_chunk_mut()) {
-                // The compiler knows the length of four numbers, those of a quaternion, which makes this faster.
-                (Ok(numbers), Some((places, behind))) => {
-                    now.attitude.write_numbers(numbers);
-                    *places = numbers.map(Into::into);
-                    behind
-                }
-                _ => write_attitude(&now.attitude, &mut self.attitude, own),
-            };
-            let (velocity, energy) = now.integrator().velocity_and_energy(now, self.inertia.as_ref());
-            let mut places = behind[..2 * <I::Group as LieGroup>::DIMENSION + 2].iter_mut();
-            let mut write = |number: ScalarIn<I>| places.next().map_or((), |place| *place = number.into());
-            velocity.each(&mut write);
-            now.momentum.each(&mut write);
-            write(energy);
-            write(now.attitude.defect());
+        if let Some(inertia) = &self.inertia {
+            now.integrator().write(now, inertia, &mut self.attitude, own);
         }
         if !self.quantities.is_empty() || end >= self.full {
             return self.end_row(now, end);
@@ -343,19 +336,6 @@ impl<I: Integrator, S: Sink> Recorder<'_, I, S> {
         self.block = Vec::new();
         RecordError::Sink { cause }
     }
-}
-
-/// Writes the numbers of an attitude over those of the row before and into a row; returns the rest of the row.
-#[inline(never)]
-fn write_attitude<'a, G: LieGroup<Scalar: Into<f64>>>(
-    attitude: &G,
-    numbers: &mut [G::Scalar],
-    row: &'a mut [f64],
-) -> &'a mut [f64] {
-    attitude.write_numbers(numbers);
-    let (places, behind) = row.split_at_mut(numbers.len());
-    places.iter_mut().zip(numbers).for_each(|(place, number)| *place = (*number).into());
-    behind
 }
 
 /// An error that can't occur: the sink lives as long as the recorder, and a row has at least the time.

@@ -13,7 +13,9 @@ use crate::error::StepError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::Effect;
 use crate::methods::CotangentGauss;
-use crate::motion::{Answer, AnyState, AnyStepper, Integrator, Moment, Plan, ScalarIn, StateOf, Stepper};
+use crate::motion::{
+    Answer, AnyState, AnyStepper, GroupState, GroupStepper, Integrator, Moment, Plan, StateOf, Stepper,
+};
 use crate::numbers::{real, reported};
 
 roots!();
@@ -105,9 +107,16 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     }
 }
 
-impl<G: LieGroup, A: Advected<G>> AnyStepper<G, A> {
+impl<G: LieGroup<Scalar = f64>, A: Advected<G>> GroupStepper<G, A> {
     /// A run with observers, as by [`Stepper::observed`].
-    pub fn observed<'a>(&'a self, state: &'a mut AnyState<G, A>) -> Run<'a, Self> {
+    pub fn observed<'a>(&'a self, state: &'a mut GroupState<G, A>) -> Run<'a, Self> {
+        Run::new(self, state)
+    }
+}
+
+impl AnyStepper {
+    /// A run with observers, as by [`Stepper::observed`].
+    pub fn observed<'a>(&'a self, state: &'a mut AnyState) -> Run<'a, Self> {
         Run::new(self, state)
     }
 }
@@ -191,7 +200,7 @@ impl<'a, I: Integrator> Run<'a, I> {
     /// [`RunError`].
     pub fn steps(mut self, steps: u64) -> Result<RunReport, RunError> {
         let mut ended = RunReport { steps: 0, iterations: 0, reason: Reason::Done };
-        let (integrator, start) = (self.integrator, self.state.steps());
+        let (integrator, start) = (self.integrator, I::steps(self.state));
         self.observers.begin(start, start.saturating_add(steps));
         look_first(&mut self.watches, &Moment::of_step(integrator, self.state))?;
         if self.show_timed(None, reported(integrator.time(self.state)), &mut ended)? {
@@ -224,7 +233,7 @@ impl<'a, I: Integrator> Run<'a, I> {
                 };
             }
         }
-        ended.steps = self.state.steps() - start;
+        ended.steps = I::steps(self.state) - start;
         Ok(ended)
     }
 
@@ -261,7 +270,7 @@ impl<'a, I: Integrator> Run<'a, I> {
                     return Err(RunError::Time { asked, now: earliest });
                 }
                 let motion = match before.filter(|_| is_after(now, asked)) {
-                    None => **self.state,
+                    None => (**self.state).clone(),
                     Some(before) => {
                         let part = self.integrator.part(before, real((asked - begun) / h));
                         part.map_err(|cause| RunError::Step { time: asked, cause })?
@@ -344,7 +353,7 @@ impl<I: Integrator> Observers<'_, I> {
 
 impl<'a, I: Integrator> Run<'a, I>
 where
-    ScalarIn<I>: Into<f64>,
+    I::Scalar: Into<f64>,
 {
     /// Observes the motion at these times, s, also between the steps: as [`Integrator::part`] of one. A time that is
     /// the end of a step, to the bit, has the state after that step.
@@ -452,9 +461,9 @@ where
             }
             return Ok(ended);
         }
-        let elapsed = reported(self.integrator.time(self.state)) / h - self.state.steps() as f64;
+        let elapsed = reported(self.integrator.time(self.state)) / h - I::steps(self.state) as f64;
         let end = ((steps - elapsed) * rounded).ceil();
-        let made = self.state.steps();
+        let made = I::steps(self.state);
         self.steps(if end > 0.0 { (end as u64).saturating_sub(made) } else { 0 })
     }
 }

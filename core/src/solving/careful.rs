@@ -21,20 +21,7 @@ impl<L: Effect> Problem<'_, L> {
         if !self.a.is_finite() {
             return Err(StepError::NonFinite { what: "momentum" });
         }
-        let equation = CalledEquation::new(self);
-        let (start, spent) = self.start(&equation.terms, guess);
-        equation.careful().solve(start, spent)
-    }
-
-    /// Initial iterates: the guess in all lanes, except those that [`solve_directly`](Self::solve_directly) has solved
-    /// without the Jacobian while another lane has failed.
-    fn start(&self, terms: &L::StepTerms, guess: &Vector<L>) -> (Lanes<Group<L>>, u32) {
-        if const { !L::JACOBIAN_IS_EXPENSIVE } || !self.goes_by_secants() {
-            return (Lanes::starting_at(guess), 0);
-        }
-        let (lanes, iterations) = self.iterate_by_secants(terms, guess);
-        let settled = lanes.settled;
-        (lanes.keeping(settled, guess), iterations)
+        CalledEquation::new(self).careful().solve(guess)
     }
 
     /// Newton's iteration from one guess; a solution on another branch is an error.
@@ -86,7 +73,7 @@ impl<L: Effect> System<Group<L>> for CalledEquation<'_, L> {
     }
 
     fn residual(&self, half: &Vector<L>) -> Vector<L> {
-        L::newton_residual(self.problem.constants, &self.terms, half).momentum_defect
+        L::newton_residual(self.problem.constants, &self.terms, half)
     }
 }
 
@@ -119,15 +106,14 @@ struct CarefulSolve<'a, G: LieGroup, R> {
 }
 
 impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
-    /// Solves from this start; if that fails, from the identity; if that fails, once more with shortened updates.
-    /// `spent` is the number of iterations before the start.
-    fn solve(&self, start: Lanes<G>, spent: u32) -> Result<Root<G>, StepError> {
-        let (warm, iterations) = self.iterate(start);
+    /// Solves from this guess; if that fails, from the identity; if that fails, once more with shortened updates.
+    fn solve(&self, guess: &G::Vector) -> Result<Root<G>, StepError> {
+        let (warm, iterations) = self.iterate(Lanes::starting_at(guess));
         let accepted = self.accepted(&warm);
         if accepted.all() {
-            return Ok(warm.root::<R>(spent + iterations));
+            return Ok(warm.root::<R>(iterations));
         }
-        let (identity, spent) = (G::Vector::zero(), spent + MAX_ITERATIONS);
+        let (identity, spent) = (G::Vector::zero(), MAX_ITERATIONS);
         let (cold, iterations) = self.iterate(warm.keeping(accepted, &identity));
         let accepted = self.accepted(&cold);
         if accepted.all() {

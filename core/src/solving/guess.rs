@@ -36,13 +36,13 @@ pub struct WarmStart<V, H = Parabola<V>> {
 }
 
 impl<V: Copy, H> WarmStart<V, H> {
-    /// The memory before the first step, from an estimate of half its coordinates, for an expensive or a cheap solve.
-    pub(crate) fn of<T: Real>(half: V, is_expensive: bool) -> Self
+    /// The memory before the first step, from an estimate of half its coordinates.
+    pub(crate) fn of<T: Real>(half: V) -> Self
     where
         V: Coordinates<T>,
         H: History<T, V>,
     {
-        Self { guess: Guess::of(half), history: H::none(is_expensive) }
+        Self { guess: Guess::of(half), history: H::none() }
     }
 
     /// Extrapolates the guess from the last increments, the latest of which has half these coordinates.

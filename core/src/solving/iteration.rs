@@ -51,22 +51,6 @@ pub(crate) struct Root<G: LieGroup> {
     pub(crate) iterations: u32,
     /// The lanes in which `3/2 half` lies outside of the ball where a solution is surely the wanted one.
     pub(crate) far: Mask<G::Scalar>,
-    pub(crate) kick: Kick<G>,
-}
-
-/// The [`moving_kick`](crate::mechanics::Residual::moving_kick) that a solve evaluates on its way.
-#[derive(Clone, Copy)]
-pub(crate) struct Kick<G: LieGroup> {
-    pub(crate) value: G::Vector,
-    /// The lanes in which the kick is that of the solution, to its rounding.
-    pub(crate) found: Mask<G::Scalar>,
-}
-
-impl<G: LieGroup> Kick<G> {
-    #[hot]
-    pub(super) fn none() -> Self {
-        Self { value: G::Vector::zero(), found: nowhere::<G::Scalar>() }
-    }
 }
 
 impl<G: LieGroup> Root<G> {
@@ -74,10 +58,10 @@ impl<G: LieGroup> Root<G> {
         Self { far: far::<R, G>(half), ..Self::of(half, R::increment_of_half(half), iterations) }
     }
 
-    /// A root with no lane far from the identity, and without a kick.
+    /// A root with no lane far from the identity.
     #[hot]
     pub(super) fn of(half: &G::Vector, increment: G::Matrix, iterations: u32) -> Self {
-        Self { half: *half, increment, iterations, far: nowhere::<G::Scalar>(), kick: Kick::none() }
+        Self { half: *half, increment, iterations, far: nowhere::<G::Scalar>() }
     }
 }
 
@@ -88,13 +72,12 @@ pub(super) struct Lanes<G: LieGroup> {
     /// updates](super::reused_jacobian).
     pub(super) det: G::Scalar,
     pub(super) settled: Mask<G::Scalar>,
-    pub(super) kick: Kick<G>,
 }
 
 impl<G: LieGroup> Lanes<G> {
     #[hot]
     pub(super) fn starting_at(half: &G::Vector) -> Self {
-        Self { half: *half, det: real(0.0), settled: nowhere::<G::Scalar>(), kick: Kick::none() }
+        Self { half: *half, det: real(0.0), settled: nowhere::<G::Scalar>() }
     }
 
     /// Iterates until all lanes have converged, at most `most` times. `once` makes an iteration, and returns whether a
@@ -125,12 +108,11 @@ impl<G: LieGroup> Lanes<G> {
     pub(super) fn keeping(mut self, accepted: Mask<G::Scalar>, start: &G::Vector) -> Self {
         self.half = self.half.select(accepted, *start);
         self.settled = accepted;
-        self.kick.found = self.kick.found & accepted;
         self
     }
 
     pub(super) fn root<R: Retraction<G>>(&self, iterations: u32) -> Root<G> {
-        Root { kick: self.kick, ..Root::at::<R>(&self.half, iterations) }
+        Root::at::<R>(&self.half, iterations)
     }
 }
 

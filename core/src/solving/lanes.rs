@@ -8,7 +8,7 @@
 
 use core::hint::black_box;
 
-use super::iteration::{Kick, Lanes, MAX_ITERATIONS, Root, System, settled};
+use super::iteration::{Lanes, MAX_ITERATIONS, Root, System, settled};
 use super::problem::{InlinedEquation, Problem};
 use super::reused_jacobian::{has_no_derivatives, has_sufficed, may_suffice};
 use crate::mechanics::{Effect, Group, Scalar, Vector};
@@ -48,7 +48,7 @@ impl<L: Effect> Problem<'_, L> {
                 // The iterates pass through memory. Otherwise the compiler mixes the code with masks into the code
                 // above, which takes half as long again.
                 let (half, det, settled) = black_box((half, made.det, settled));
-                started = Some(Lanes { half, det, settled, kick: Kick::none() });
+                started = Some(Lanes { half, det, settled });
             }
         }
         let (mut lanes, again) = if let Some(lanes) = started {

@@ -6,7 +6,7 @@ roots!();
 ///
 /// The returned fraction passes. If larger fractions pass again beyond one that fails, any of these bounds may be
 /// found.
-pub(crate) fn largest_fraction(passes: impl Fn(f64) -> bool) -> Option<f64> {
+pub fn largest_fraction(passes: impl Fn(f64) -> bool) -> Option<f64> {
     if passes(1.0) {
         return Some(1.0);
     }
@@ -27,7 +27,7 @@ pub(crate) fn largest_fraction(passes: impl Fn(f64) -> bool) -> Option<f64> {
 }
 
 /// A step rounded towards zero, as a step slightly above the largest can't be solved.
-pub(crate) fn six_digits(step: f64) -> f64 {
+pub fn six_digits(step: f64) -> f64 {
     let unit = 10.0_f64.powf(5.0 - step.abs().log10().floor());
     // The unit isn't finite for zero and its neighbours.
     if unit.is_finite() { (step * unit).trunc() / unit } else { step }

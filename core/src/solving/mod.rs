@@ -1,10 +1,9 @@
 //! Solving the momentum equation (2.7) for the increment `F`, and bounds on its solutions.
 //!
-//! [`problem`] is the solve that a step usually makes, by Newton's [`iteration`]; [`reused_jacobian`], [`secants`] and
-//! [`lanes`] are its cheaper and its wider forms, [`careful`] has the fallbacks, and [`branch`] the check that the
-//! solution is on the branch of `F = I`. This room has neither states nor time.
+//! [`problem`] is the solve that a step usually makes, by Newton's [`iteration`]; [`reused_jacobian`] and [`lanes`] are
+//! its cheaper and its wider forms, and [`careful`] has the fallbacks and the check that the solution is on the branch
+//! of `F = I`. This room has neither states nor time.
 
-mod branch;
 mod careful;
 mod guess;
 mod iteration;
@@ -12,13 +11,11 @@ mod lanes;
 mod largest_step;
 mod problem;
 mod reused_jacobian;
-mod secants;
 mod solvability;
 
-pub(crate) use branch::trusted_radius;
 pub use guess::{Guess, WarmStart};
-pub(crate) use iteration::{Kick, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SETTLED};
-pub(crate) use largest_step::{largest_fraction, six_digits};
+pub(crate) use iteration::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, Root, SETTLED};
+pub use largest_step::{largest_fraction, six_digits};
 pub(crate) use problem::{Problem, newton_system, step_terms};
 pub(crate) use reused_jacobian::{Curvature, has_sufficed, may_suffice, safe};
 pub use solvability::Solvability;

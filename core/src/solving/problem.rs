@@ -23,8 +23,6 @@ pub(crate) struct Problem<'a, L: Effect> {
     pub(crate) a: Vector<L>,
     pub(crate) w: &'a L::Advected,
     pub(crate) h: Scalar<L>,
-    /// The radius for secants, [`trusted_radius`](super::trusted_radius), or zero.
-    pub(crate) trusted: Scalar<L>,
     /// A [`safe`](super::safe) determinant for a reused Jacobian.
     pub(crate) safe: Scalar<L>,
 }
@@ -46,7 +44,7 @@ impl<L: Effect> System<Group<L>> for InlinedEquation<'_, L> {
     }
 
     fn residual(&self, half: &Vector<L>) -> Vector<L> {
-        L::newton_residual(self.constants, self.terms, half).momentum_defect
+        L::newton_residual(self.constants, self.terms, half)
     }
 }
 
@@ -65,10 +63,6 @@ impl<L: Effect> Problem<'_, L> {
         largest: Scalar<L>,
     ) -> Option<Root<Group<L>>> {
         let terms = L::step_terms(self.constants, &self.a, self.w);
-        if const { L::JACOBIAN_IS_EXPENSIVE } && self.goes_by_secants() {
-            let (lanes, iterations) = self.iterate_by_secants(&terms, guess);
-            return lanes.settled.all().then(|| lanes.root::<L::Retraction>(iterations));
-        }
         let equation = InlinedEquation::<L> { constants: self.constants, terms: &terms };
         if const { Scalar::<L>::LANES > 1 } {
             return self.solve_together::<REUSE>(&equation, guess, largest);

@@ -8,7 +8,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::methods::{Composition, JointedBodies, KineticFlow, LinkedBodies, ProcessedSplitting, Splitting};
+use crate::methods::{Composition, KineticFlow, LinkedBodies, ProcessedSplitting, Splitting};
 use crate::motion::{
     Kept, Motion, MotionOf, OwnStep, Plan, Steerable, StepReport, Stepper, Summation, SumsOf, TOLERATED, Variable,
     restored,
@@ -68,12 +68,6 @@ pub trait Compensable {}
 
 impl<S: Effect> Compensable for OwnStep<S> {}
 impl<S: Effect> Compensable for Composition<S> {}
-impl<S, C, const K: usize, const N: usize, const T: usize, const L: usize> Compensable
-    for JointedBodies<S, C, K, N, T, L>
-where
-    S: Effect,
-{
-}
 impl<S: Effect, const N: usize> Compensable for LinkedBodies<S, N> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Splitting<S, K> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for ProcessedSplitting<S, K> {}

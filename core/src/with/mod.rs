@@ -1,5 +1,5 @@
 //! Wrappers of a method: compensated sums, prescribed values, steps of varying length, remedies for steps without a
-//! solution, checkpoints.
+//! solution, checkpoints; and a method with its wrappers as a value, a [`Method`].
 //!
 //! Each can be combined with every method for which it makes sense, and with the others.
 
@@ -10,6 +10,7 @@ mod compensated;
 pub mod densities;
 mod density;
 mod driven;
+mod method;
 mod orbit;
 mod pace;
 mod remedies;
@@ -22,6 +23,7 @@ pub use compensated::{Carry, Compensable, CompensatedSums};
 #[doc(hidden)]
 pub use density::Density;
 pub use driven::Driven;
+pub use method::{Method, Scheme, Stages, Steppable, UnknownMethod};
 pub use pace::Pacable;
 #[doc(hidden)]
 pub use pace::PacedStep;

@@ -3,9 +3,10 @@
 use super::compensated::CompensatedSums;
 use super::density::DensityMemory;
 use crate::error::{SetupError, StepError};
+use crate::groups::Retraction as _;
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector, energy};
-use crate::motion::{ElapsedTime, Motion, MotionOf, OwnStep, Plan, StepReport, Stepper, SumsOf};
-use crate::numbers::Vectors;
+use crate::motion::{ElapsedTime, Guess, Motion, MotionOf, OwnStep, Plan, StepReport, Stepper, SumsOf};
+use crate::numbers::{History as _, Polynomial, Vectors};
 
 /// A plan whose steps are equal in `τ`, `dt = s dτ`, by [`Stepper::paced`].
 #[derive(Clone, Debug)]
@@ -17,16 +18,28 @@ pub struct PacedStep<P>(P);
     message = "the steps of `{Self}` have no pace",
     note = "a pace is in the declaration's own step: `Stepper::new(…)?.paced()`, with sums compensated before"
 )]
-pub trait Pacable {}
+pub trait Pacable<S: Effect>: Plan<S> {
+    /// The guess of the next solve.
+    fn guess(kept: &mut Self::Kept) -> &mut Guess<Vector<S>>;
+}
 
-impl<S: Effect> Pacable for OwnStep<S> {}
-impl<P: Pacable> Pacable for CompensatedSums<P> {}
+impl<S: Effect> Pacable<S> for OwnStep<S> {
+    fn guess(kept: &mut Self::Kept) -> &mut Guess<Vector<S>> {
+        &mut kept.guess
+    }
+}
+
+impl<S: Effect, P: Pacable<S>> Pacable<S> for CompensatedSums<P> {
+    fn guess(kept: &mut Self::Kept) -> &mut Guess<Vector<S>> {
+        P::guess(&mut kept.0)
+    }
+}
 
 /// An energy, J, in whose rounding all others vanish. It is a power of two, so that dividing by it is exact.
 const VAST: f64 = f64::from_bits((1023 + 500) << 52);
 
 /// # Wrap: steps of a transformed time
-impl<S: Effect<Scalar = f64>, P: Plan<S> + Pacable> Stepper<S, P> {
+impl<S: Effect<Scalar = f64>, P: Pacable<S>> Stepper<S, P> {
     /// Steps of `dt = s dτ` with the declared `pace = s(w)`. The times of all arguments and results are times `t`.
     ///
     /// The stepper's `h` is one of `τ`. The energy of a start becomes the number `E_0` of its state. A step takes
@@ -57,9 +70,10 @@ fn pace<S: Effect<Scalar = f64>>(scene: &S, w: &S::Advected) -> f64 {
     scene.with_energy(w, VAST).map_or(f64::NAN, |(w, _)| -scene.potential(&w) / VAST)
 }
 
-impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
-    /// The pace takes the place of a density.
-    type Kept = (P::Kept, DensityMemory);
+impl<S: Effect<Scalar = f64>, P: Pacable<S>> Plan<S> for PacedStep<P> {
+    /// The pace takes the place of a density. In a rescaled time motions are smooth, and the polynomial predicts an
+    /// increment so well that one iteration converges to rounding.
+    type Kept = (P::Kept, (DensityMemory, Polynomial<Vector<S>>));
 
     const VECTORS: Vectors = P::VECTORS;
     const EXPLAINS: bool = P::EXPLAINS;
@@ -80,7 +94,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
 
     fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         let memory = DensityMemory { density: pace(scene, &motion.advected), time: ElapsedTime::nothing() };
-        (self.0.keep(scene, motion), memory)
+        (self.0.keep(scene, motion), (memory, Polynomial::none()))
     }
 
     fn momentum(&self, scene: &S, attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
@@ -98,26 +112,33 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
     }
 
     fn time(&self, _: &MotionOf<S>, kept: &Self::Kept) -> f64 {
-        kept.1.time.sum
+        kept.1.0.time.sum
     }
 
     /// The length of a step is known by making the step.
     fn length(&self, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept, is_ahead: bool) -> f64 {
         let part = self.0.part(scene, motion, &kept.0, if is_ahead { 1.0 } else { -1.0 });
-        part.map_or(f64::NAN, |part| self.step_size() * 0.5 * (kept.1.density + pace(scene, &part.advected)))
+        part.map_or(f64::NAN, |part| self.step_size() * 0.5 * (kept.1.0.density + pace(scene, &part.advected)))
     }
 
     #[hot]
     fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let energy = scene.with_energy(&motion.now().advected, 0.0);
-        let report = self.0.step(scene, motion, &mut kept.0)?;
+        let (inner, (memory, history)) = kept;
+        let last = P::guess(inner).half;
+        let report = self.0.step(scene, motion, inner)?;
+        let guess = P::guess(inner);
+        let next = history.next(last, guess.half);
+        if S::Retraction::is_half_well_near_identity(&guess.half) {
+            guess.next = next;
+        }
         // A step may recompute the advected parameters from the scene, without the energy of the start.
         let own = energy.and_then(|(_, energy)| scene.with_energy(&motion.now().advected, energy));
         if let Some((advected, _)) = own {
             motion.show(Motion { advected, ..*motion.now() });
         }
-        let before = core::mem::replace(&mut kept.1.density, pace(scene, &motion.now().advected));
-        kept.1.time.add(self.step_size() * 0.5 * (before + kept.1.density));
+        let before = core::mem::replace(&mut memory.density, pace(scene, &motion.now().advected));
+        memory.time.add(self.step_size() * 0.5 * (before + memory.density));
         Ok(report)
     }
 
@@ -135,7 +156,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Plan<S> for PacedStep<P> {
         for _ in 0..MOST_ITERATIONS {
             let part = self.0.part(scene, motion, &kept.0, share)?;
             let pace = pace(scene, &part.advected);
-            let missing = time - share * h * 0.5 * (kept.1.density + pace);
+            let missing = time - share * h * 0.5 * (kept.1.0.density + pace);
             if missing.abs() <= 4.0 * f64::EPSILON * time.abs() {
                 return Ok(part);
             }

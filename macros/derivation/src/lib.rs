@@ -2,13 +2,13 @@
 //!
 //! Its rooms depend on each other in one direction:
 //!
-//! `lib → staged → expand → emit → judged → {declared, program} → mathematics`
+//! `lib → whole → staged → expand → emit → judged → {declared, program} → mathematics`
 //!
 //! Tokens are quoted in `emit` alone. Syntax is known in `declared`, which reads it, and in `emit`, which writes it;
 //! `mathematics` and `program` know no span either. A test reads this page and holds all sources to it.
 //!
 //! The macros of `liestep-macros` pass their tokens to [`expand()`] and its neighbours; [`staged()`] derives texts at run
-//! time. Four rooms are public for the tests alone, and hidden.
+//! time, and [`whole`] makes steps of them. Four rooms are public for the tests alone, and hidden.
 
 // Marks for callers outside of the crate, which the functions of these rooms don't have.
 #![allow(clippy::len_without_is_empty, clippy::must_use_candidate, clippy::return_self_not_must_use)]
@@ -24,6 +24,7 @@ pub mod mathematics;
 #[doc(hidden)]
 pub mod program;
 mod staged;
+pub mod whole;
 
 pub use declared::Role;
 pub use declared::errors::{Mistake, suggestion};

@@ -1,7 +1,7 @@
 //! Scenes whose inertia depends on advected parameters.
 
-use liestep::accuracy::Steppable;
 use liestep::numbers::Entries;
+use liestep::with::Steppable;
 
 use super::*;
 
@@ -39,6 +39,7 @@ where
                 Some(scheme) => Stepper::composed(scene.clone(), h, scheme).unwrap().into_any(),
                 None => Stepper::new(scene.clone(), h).unwrap().into_any(),
             };
+            let stepper = stepper.on_group::<G, S::Advected>().unwrap();
             let mut state = stepper.start(attitude, velocity).unwrap();
             stepper.run(&mut state, steps.into()).unwrap();
             apart(&system.state(&state.attitude(), &state.momentum()), &exact)

@@ -3,8 +3,8 @@
 mod command_lines;
 mod continuous_bodies;
 mod damping;
+mod higher_order_tops;
 mod random_inputs;
 mod reduction;
 mod rows;
-mod secants_long_run;
 mod steady_turns;

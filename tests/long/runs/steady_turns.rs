@@ -7,7 +7,7 @@
 
 use declarations::HeavyTop;
 use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
-use liestep::motion::Integrator;
+use liestep::motion::{Integrator, Motion};
 use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -46,7 +46,7 @@ fn assert_kept(name: &str, start: &TopMotion, end: &TopMotion) {
 /// Each body makes these steps.
 fn turn<I>(method: &str, steps: u32, stepper: impl Fn(HeavyTop, [f64; 3]) -> (I, I::State))
 where
-    I: Integrator<Group = SO3, Advected = Vector3<f64>>,
+    I: Integrator<Motion = Motion<SO3, Vector3<f64>>>,
 {
     for moments in BODIES {
         let (stepper, mut state) = stepper(weightless(moments), moments);

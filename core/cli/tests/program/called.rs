@@ -4,30 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use expect_test::expect_file;
-
-pub(crate) const TOP: &str = r#"title = "A heavy top with drag"
-
-[body]
-moments = [3, 3, 4]
-
-[gravity]
-m = "1 kg"
-g = 9.81
-rho = [0, 0, 1.0]
-up = [0, 0, 1]
-
-[drag]
-c = 1e-3
-
-[start]
-euler = [0, "45 deg", 0]
-velocity = [0, 0, "60 rpm"]
-
-[run]
-step = "10 ms"
-duration = 2
-"#;
+pub(crate) const TOP: &str = include_str!("scenes/top.toml");
 
 /// The program. Its library is compiled already; this test doesn't compile the scene's types a second time.
 pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_liestep");
@@ -63,22 +40,6 @@ pub(crate) fn refused(folder: &Path, text: &str) -> String {
     let output = simulate(folder, &["top.toml"]);
     assert!(!output.status.success() && output.stdout.is_empty(), "{text}");
     String::from_utf8(output.stderr).unwrap()
-}
-
-/// The mistakes in `mistakes/{file}.txt`: lines of a valid text, the lines that replace them, and the message.
-pub(crate) fn mistakes(file: &str, text: &str, message: impl Fn(&str) -> String) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/program/mistakes/{file}.txt"));
-    let mistakes = fs::read_to_string(&path).unwrap();
-    let found = mistakes.split("\n\n").map(|mistake| {
-        let changed: Vec<&str> = mistake.lines().filter(|line| line.starts_with(['-', '+'])).collect();
-        let side = |sign| -> Vec<String> {
-            changed.iter().filter_map(|line| line.strip_prefix(sign)).map(|line| format!("{line}\n")).collect()
-        };
-        let [right, wrong] = ["- ", "+ "].map(|sign| side(sign).concat());
-        assert!(!right.is_empty() && text.contains(&right), "{mistake}");
-        format!("{}\n{}", changed.join("\n"), message(&text.replacen(&right, &wrong, 1)))
-    });
-    expect_file![path].assert_eq(&found.collect::<Vec<_>>().join("\n"));
 }
 
 /// The rows of the table of a scene, after a run.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use liestep_ensemble::{Shard, Status, Store};
 
-use crate::called::{TOP, called, folder, mistakes, printed, refuses, rows};
+use crate::called::{TOP, called, folder, printed, refuses, rows};
 
 /// The top with an ensemble.
 fn drawn(ensemble: &str) -> String {
@@ -187,21 +187,4 @@ fn an_event_has_a_probability() {
         sum / k
     );
     assert!(told.contains(&line), "{line}: {told}");
-}
-
-#[test]
-fn mistakes_in_ensembles_have_places() {
-    let folder = folder("mistakes_in_ensembles_have_places");
-    let right = drawn("draw.gravity.g = { from = 1, to = 2 }\n");
-    mistakes("ensembles", &right, |text| {
-        fs::write(folder.join("top.toml"), text).unwrap();
-        let output = called(&folder, &["check", "top.toml"]);
-        assert_eq!(output.status.code(), Some(1), "{text}");
-        String::from_utf8(output.stderr).unwrap()
-    });
-    let chosen = right.replace("[drag]\nc = 1e-3\n", "").replace("step = \"10 ms\"", "accuracy = 1e-6");
-    fs::write(folder.join("top.toml"), chosen).unwrap();
-    refuses(&folder, &["check", "top.toml"], 1, "the members of an ensemble make the same steps");
-    fs::write(folder.join("top.toml"), TOP).unwrap();
-    refuses(&folder, &["ensemble", "top.toml"], 1, "has no table `ensemble`");
 }

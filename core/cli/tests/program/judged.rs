@@ -5,7 +5,7 @@ use std::fs;
 use liestep_scene::{Run, Sample, Scene, SceneFile, System};
 use nalgebra::Vector3;
 
-use crate::called::{called, folder, printed, refuses};
+use crate::called::{called, folder, refuses};
 
 fn one(text: &str) -> SceneFile {
     liestep_scene::parse("one.toml", text).unwrap()
@@ -69,53 +69,14 @@ fn springs_that_are_too_stiff() {
     assert!(ring(2e4, "1 ms").run().unwrap().notes().is_empty());
 }
 
-/// Constrained directions don't vibrate: a spring next to a pivot moves the whole rod, `ω² = k r²/J`.
-#[test]
-fn springs_beside_joints() {
-    let held = |k: f64, joint: &str| {
-        let rod = "title = \"rod\"\n[[body]]\nname = \"rod\"\nm = 0.01\nmoments = [0.1, 0.1, 0.1]\nposition = [0, 0, 0]\n\
-                   start.euler = [0, 0, 0]\nstart.velocity = [0, 0.1, 0]\n";
-        let spring = spring(["space", "rod"], [[0.01, 0.0, 0.1], [0.01, 0.0, 0.0]], k, 0.05);
-        several(&format!("{rod}{joint}{spring}[run]\nstep = 0.01\nduration = 1\n")).run()
-    };
-    let pin = "[[joint]]\nkind = \"pin\"\nbodies = [\"space\", \"rod\"]\nat = [[0, 0, 0], [0, 0, 0]]\n\
-               axes = [[0, 1, 0], [0, 1, 0]]\n";
-    let ball = "[[joint]]\nkind = \"ball\"\nbodies = [\"space\", \"rod\"]\nat = [[0, 0, 0], [0, 0, 0]]\n";
-    for joint in [pin, ball] {
-        // √(1e6 · 1e-4/0.1) = 31.6 rad/s; the free rod would have √(1e6/0.01).
-        assert!(held(1e6, joint).unwrap().notes().is_empty());
-        let refused = held(5e8, joint).unwrap_err().to_string();
-        assert!(refused.contains("at 707 rad/s"), "{refused}");
-    }
-    assert!(held(1e6, "").unwrap_err().to_string().contains("at 10000 rad/s"));
-}
+const TIED: &str = include_str!("scenes/tied.toml");
 
-const TIED: &str = "title = \"tied\"\n[body]\nmoments = [1, 1, 1]\nkinetic = \"cayley\"\n[spring]\nk = 1e6\nlength = 1\n\
-                    at = [0, 0, 1]\nanchor = [0.5, 0, 2.5]\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 0, 0]\n[run]\n\
-                    step = 0.01\nduration = 1\n";
-
-/// A stiff spring is refused though its step always has a solution: the energy would rise from 2e5 J to 2e7 J.
+/// A soft spring conserves the energy.
 #[test]
-fn a_stiff_spring_of_one_body() {
-    for kinetic in ["cayley", "geodesic", "rigid"] {
-        let refused = one(&TIED.replace("cayley", kinetic)).run().unwrap_err().to_string();
-        assert!(refused.starts_with("one.toml:5:1: the fastest vibration,"), "{refused}");
-        assert!(refused.contains("is at 991 rad/s, and a step of 0.01 s makes it grow: take a `step` below 0.00202 s"));
-    }
+fn a_soft_spring_of_one_body() {
     let soft = one(&TIED.replace("1e6", "1e3")).run().unwrap();
     let [first, end] = [&soft.samples()[0], last(&soft)].map(|sample| sample.energy);
     assert!(soft.notes().is_empty() && (end / first - 1.0).abs() < 0.02, "{first} {end}");
-    // An arm along the spring vibrates after the body has turned, if the energy suffices for the turn.
-    let turned =
-        TIED.replace("anchor = [0.5, 0, 2.5]", "anchor = [1.2, 0, 0]").replace("at = [0, 0, 1]", "at = [-1, 0, 0]");
-    assert!(one(&turned).run().unwrap_err().to_string().contains("makes it grow"));
-    let calm = turned.replace("at = [-1, 0, 0]", "at = [0.2, 0, 0]");
-    assert!(one(&calm).run().unwrap().notes().is_empty());
-    // Only the axis of the smaller moment is stiff there, and the body may not reach it: a note suffices.
-    let light = TIED.replace("[1, 1, 1]", "[1, 1, 0.01]").replace("k = 1e6\nlength = 1", "k = 1e4\nlength = 0.2");
-    let light = light.replace("at = [0, 0, 1]", "at = [1, 0, 0]").replace("[0.5, 0, 2.5]", "[1.2, 0, 0]");
-    let run = one(&light.replace("velocity = [0, 0, 0]", "velocity = [0, 1, 0]")).run().unwrap();
-    assert!(notes(&run).contains("where this spring pulls across its arm"), "{}", notes(&run));
 }
 
 /// Other potentials are kicks, too: `ω² = |c||w|/J` for gravity and a dipole, `3 GM/r³ (J₃ − J₁)/J₂` for a gradient.
@@ -175,35 +136,20 @@ fn stiff_springs_of_members() {
     assert!(notes.contains("can't exist; the first of them is member") && notes.contains("makes it grow"), "{notes}");
 }
 
-/// A spring whose ends coincide has no direction: its force would stay zero, with 40 J in the spring.
+/// A spring of length zero has no force between ends at one place.
 #[test]
-fn springs_without_a_direction() {
-    let here = spring(["space", "b0"], [[0.0, 0.0, 1.0]; 2], 80.0, 1.0);
-    let run = "[run]\nstep = 0.01\nduration = 0.02\n";
-    let message = several(&format!("{}{here}{run}", masses(&[0.0]))).run().unwrap_err().to_string();
-    assert!(message.starts_with("several.toml:9:1: the ends of this spring are at one place"), "{message}");
-    // A spring of length zero has no force there.
+fn springs_of_length_zero() {
     let slack = spring(["space", "b0"], [[0.0; 3]; 2], 80.0, 0.0);
-    assert!((last(&several(&format!("{}{slack}{run}", masses(&[0.0]))).run().unwrap()).energy).abs() < 1e-30);
-    let message = one(&TIED.replace("[0.5, 0, 2.5]", "[0, 0, 1]")).run().unwrap_err().to_string();
-    assert!(message.starts_with("one.toml:5:1: the ends of this spring are at one place"), "{message}");
+    let run = several(&format!("{}{slack}[run]\nstep = 0.01\nduration = 0.02\n", masses(&[0.0]))).run().unwrap();
+    assert!(last(&run).energy.abs() < 1e-30);
 }
 
 /// A rod that is thrown about its joint.
-const THROWN: &str = "title = \"rod\"\n[[body]]\nname = \"rod\"\nm = 1\nmoments = [0.0858, 0.0858, 0.005]\n\
-                      position = [0, 0, 3]\nstart.euler = [0.2, 0, 0]\nstart.velocity = [3, 0, 0]\n[[joint]]\nkind = \"ball\"\n\
-                      bodies = [\"space\", \"rod\"]\nat = [[0, 0, 0], [0, 0, 0.5]]\n[run]\nstep = 0.002\nduration = 0.1\n\
-                      nearest = true\n";
+const THROWN: &str = include_str!("scenes/thrown.toml");
 
-/// The nearest start preserves attitudes and angular velocities where shifts suffice, and reports the changes.
+/// The nearest start preserves attitudes and angular velocities where shifts suffice.
 #[test]
 fn what_the_nearest_start_changes() {
-    let folder = folder("nearest");
-    fs::write(folder.join("rod.toml"), THROWN).unwrap();
-    let said = "  `rod` doesn't start as the file says: moved by 3.5 m, turned by 0 rad, its velocity by 1.5 m/s, its \
-                angular velocity by 0 rad/s\n";
-    assert!(printed(&folder, &["run", "rod.toml", "--out", "."]).contains(said));
-    assert!(printed(&folder, &["check", "rod.toml"]).ends_with(said));
     let run = several(THROWN).run().unwrap();
     let start = &run.samples()[0].bodies[0];
     assert!((start.velocity - Vector3::new(3.0, 0.0, 0.0)).norm() < 1e-12, "{}", start.velocity);
@@ -254,28 +200,17 @@ fn the_nearest_start_of_free_bodies() {
 /// A wheel at 500 rad/s turns by 500 rad in a second. Steps of (3.13) of 1 ms turn it by 523.6 rad, and a note says so.
 #[test]
 fn a_fast_wheel() {
-    let wheel = "title = \"wheel\"\n[[body]]\nname = \"wheel\"\nm = 1\nmoments = [0.01, 0.006, 0.006]\nposition = [0, 0, 0]\n\
-                 start.euler = [0, 0, 0]\nstart.velocity = [500, 0, 0]\n[run]\nstep = \"1 ms\"\nduration = 1\n";
+    let wheel = include_str!("scenes/wheel.toml");
     let system = several(wheel);
     let run = system.run().unwrap();
     let [w, x, ..] = last(&run).bodies[0].quaternion;
     let turned = 2.0 * x.atan2(w);
     assert!((0.5 * (turned - 500.0)).sin().abs() < 1e-11, "{turned}");
     assert!(run.notes().is_empty() && system.end_error(&run).starts_with("  the end is off by about "));
-    assert_eq!(system.about(), "1 body, 1000 steps of 0.001 s, hΩ in rad: 0.5 (wheel)");
     let rigid = several(&wheel.replace("position", "kinetic = \"rigid\"\nposition"));
     let run = rigid.run().unwrap();
     let [w, x, ..] = last(&run).bodies[0].quaternion;
     assert!((0.5 * (2.0 * x.atan2(w) - 523.598_775_6)).sin().abs() < 1e-6);
-    let said = notes(&run);
-    assert!(
-        said.starts_with("several.toml:2:1: hΩ = 0.5 rad: by `kinetic = \"rigid\"`") && said.contains("5 % too far")
-    );
-    assert!(
-        rigid
-            .end_error(&run)
-            .starts_with("  the end isn't determined: by steps of 0.002 s the attitude is another from")
-    );
 }
 
 /// The kinetic terms of several bodies agree with those of a single body.
@@ -299,16 +234,6 @@ fn kinetic_terms_of_several_bodies() {
         assert!(ends.iter().all(|other: &Vector3<f64>| (other - beside.velocity).norm() > 1e-4), "{kinetic}");
         ends.push(beside.velocity);
     }
-    let text = several_of("kinetic = \"sixth-order\"");
-    let message = Scene::parse("a.toml", &text).err().unwrap().to_string();
-    assert!(message.starts_with("a.toml:6:11: a body among several is `geodesic`, `rigid` or `cayley`"), "{message}");
-}
-
-fn several_of(line: &str) -> String {
-    format!(
-        "title = \"a\"\n[[body]]\nname = \"a\"\nm = 2\nmoments = [1, 2, 2.5]\n{line}\nposition = [0, 0, 0]\n\
-         start.euler = [0, 0, 0]\nstart.velocity = [1, 2, 1.5]\n[run]\nstep = 0.02\nduration = 2\n"
-    )
 }
 
 /// A thin rod from a public report, with the default method and with steps of 1 ms. The reference after 10 s is by
@@ -370,73 +295,13 @@ fn readme_with_a_step(readme: &str) -> String {
     scene.split("```").next().unwrap().replace("step = \"10 ms\"\n", "").replace("duration", "step = 0.01\nduration")
 }
 
-/// Not all scenes have a method for an accuracy; each message says what to write in the file.
+/// A run without a step of a length that no machine completes in seconds.
 #[test]
-fn runs_without_a_step() {
-    let text = |more: &str| {
-        format!(
-            "title = \"a\"\n[body]\nmoments = [3, 3, 4]\n{more}[start]\neuler = [0, 0, 0]\nvelocity = [0, 1, 6]\n[run]\n\
-             duration = 2\n"
-        )
-    };
-    let message = |more: &str| liestep_scene::parse("a.toml", &text(more)).err().unwrap().to_string();
-    assert!(message("[drag]\nc = 1\n").ends_with("drag does work, so give a `step`"));
-    assert!(
-        message("kinetic = \"cayley\"\n").starts_with("a.toml:4:11: an `accuracy`, which a run without a `step` has,")
-    );
-    assert!(
-        message("[ensemble]\nmembers = 3\ndraw.start.velocity = [0, 0, { from = 1, to = 2 }]\n")
-            .contains("give a `step`")
-    );
-    // Runs of a length that no machine completes in seconds.
+fn a_run_without_a_step() {
     let folder = folder("runs_without_a_step");
-    fs::write(
-        folder.join("long.toml"),
-        text("[gravity]\nm = 1\ng = 9.81\nrho = [0.5, 0, 1]\nup = [0, 0, 1]\n")
-            .replace("duration = 2", "duration = 1e9"),
-    )
-    .unwrap();
+    let gravity = "[gravity]\nm = 1\ng = 9.81\nrho = [0.5, 0, 1]\nup = [0, 0, 1]\n[start]";
+    let text = include_str!("scenes/plain.toml").replace("[start]", gravity).replace("duration = 2", "duration = 1e9");
+    fs::write(folder.join("long.toml"), text).unwrap();
     refuses(&folder, &["run", "long.toml"], 3, "a run without a `step` is one for an accuracy of 1e-6: give a `step`");
-    let output = called(&folder, &["check", "long.toml"]);
-    assert!(output.status.success());
-}
-
-/// Small energies are printed with digits, and times of steps without rounding.
-#[test]
-fn digits_of_a_report() {
-    let text = "title = \"grain\"\n[body]\nmoments = [1e-12, 1e-12, 1e-12]\n[start]\neuler = [0, 0, 0]\n\
-                velocity = [0, 0, 2]\n[run]\nstep = 0.1\nduration = 1\n";
-    let scene = one(text);
-    let report = scene.summary(&scene.run().unwrap());
-    assert!(report.contains("energy 2e-12 J → 2e-12 J, momentum 2e-12 → 2e-12 kg m²/s"), "{report}");
-}
-
-/// Durations of zero and below are refused.
-#[test]
-fn runs_of_no_steps() {
-    let folder = folder("runs_of_no_steps");
-    let message = |run: &str| {
-        let text = format!(
-            "title = \"a\"\n[body]\nmoments = [3, 3, 4]\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 1, 6]\n[run]\n{run}\n"
-        );
-        fs::write(folder.join("a.toml"), text).unwrap();
-        let output = called(&folder, &["run", "a.toml"]);
-        assert_eq!(output.status.code(), Some(1), "{run}");
-        String::from_utf8(output.stderr).unwrap()
-    };
-    for run in ["duration = 0", "duration = -1", "step = 0.1\nduration = -40", "step = -0.1\nduration = 40"] {
-        assert!(message(run).contains("must be above zero"), "{run}");
-    }
-    assert!(
-        message("step = 0.1\nduration = 1.234")
-            .contains("isn't a whole number of steps of 0.1 s; the nearest is 1.2 s")
-    );
-    assert!(message("step = 0.1\nduration = 0.01").contains("shorter than one `step` of 0.1 s"));
-    let system =
-        |run: &str| Scene::parse("a.toml", &several_of("").replace("step = 0.02\nduration = 2", run)).err().unwrap();
-    for run in
-        ["step = 0.1\nduration = 0", "step = 0.1\nduration = -1", "step = 0\nduration = 1", "step = -1\nduration = 1"]
-    {
-        assert!(system(run).to_string().contains("must be above zero"), "{run}");
-    }
+    assert!(called(&folder, &["check", "long.toml"]).status.success());
 }

@@ -10,6 +10,7 @@ mod orbits;
 mod page;
 mod readme;
 mod runs;
+mod sessions;
 mod several;
 mod sums;
 mod wrong_files;

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::called::{TOP, folder, printed, refuses};
+use crate::called::{TOP, folder, printed};
 
 /// Runs the top and returns the text of its page.
 fn page(folder: &Path, title: &str) -> String {
@@ -42,21 +42,6 @@ fn a_table_is_replayed() {
     let (first, second) = (lists(&page), lists(&again));
     assert_eq!(first.len(), 9);
     assert_eq!(first, second);
-
-    let refused = |table: &str, message: &str| {
-        fs::write(folder.join("wrong.csv"), table).unwrap();
-        refuses(&folder, &["replay", "wrong.csv"], 1, &format!("error: wrong.csv{message}"));
-    };
-    let names = "t,q_w,q_x,q_y,q_z\n";
-    refused("", ":1:1: has no columns t;");
-    refused("t\n0\n", ":1:1: has no columns q_w, q_x, q_y, q_z;");
-    refused(names, ":2:1: has no row");
-    refused(&format!("{names}0,1,0,0,0\n0,1,0,0,0\n"), ":3:1: is not later than the row before");
-    refused(&format!("{names}0,1,0,0,0\n1,1,0,0\n"), ":3:1: has 4 values below 5 names");
-    refused(&format!("{names}0,1,0,x,0\n"), ":2:7: isn't a number");
-    refused(&format!("{names}0,1,0,nan,0\n"), ":2:7: isn't a finite number");
-    refused(&format!("{names}0,1,1,0,0\n"), ":2:1: the quaternion isn't a unit one");
-    refused(&format!("\"a \"\"b\"\",\nc\",{names}1,0,1,0,0,0\n\n1,0,1,0,0,0\n"), ":5:1: is not later");
 
     // A recorder's table may also have names in quotes, and gaps.
     let table = "t,q_w,q_x,q_y,q_z,\"drag, N\",energy\n0,1,0,0,0,inf,NaN\n1,1,0,0,0,1e-3,2.5\n2,1,0,0,0,-inf,NaN\n";

@@ -264,7 +264,7 @@ fn events() {
     let text = "title = \"ball\"\n[body]\nmoments = [1, 1, 1]\n[start]\neuler = [0, 0, 0]\nvelocity = [2, 0, 0]\n\
                 [run]\nstep = 0.07\nduration = 7\nmethod = { splitting = \"Strang\" }\n\
                 [[event]]\nname = \"low\"\ntilt = \"60 deg\"\ndirection = \"rising\"\n\
-                [[event]]\nname = \"side\"\naxis_2 = 0.5\n";
+                [[event]]\nname = \"side\"\naxis_y = 0.5\n";
     fs::write(folder.join("ball.toml"), text).unwrap();
     let report = printed(&folder, &["run", "ball.toml", "--csv", "--html", "--out", "."]);
     assert!(
@@ -296,7 +296,7 @@ fn events() {
     }
     assert!(fs::read_to_string(folder.join("ball.html")).unwrap().contains("events: [\n[0.5235987755"));
 
-    fs::write(folder.join("stop.toml"), text.replace("axis_2 = 0.5", "axis_2 = 0.5\nstop = true")).unwrap();
+    fs::write(folder.join("stop.toml"), text.replace("axis_y = 0.5", "axis_y = 0.5\nstop = true")).unwrap();
     let report = printed(&folder, &["run", "stop.toml", "--csv", "--out", "."]);
     assert!(report.contains(", 27 steps of 0.07 s\n") && report.contains(", which ended the run\n"), "{report}");
     assert_eq!(table_of(&folder.join("stop.csv")).last().unwrap()[0].to_bits(), (0.07 * 27.0_f64).to_bits());

@@ -8,7 +8,7 @@ use liestep::effects::{Gravity, RigidBody};
 use liestep::gradients::Input;
 use liestep::groups::{LieGroup as _, SE3};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Effect as _, Regular, SecondDerivatives, Sum, Term as _, WithEitherKinetic};
+use liestep::mechanics::{Effect as _, Regular, SecondDerivatives, Sum, Term as _, WithKinetic};
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, force, lagrangian};
 use liestep_control::{Control, ControlError, ControlPlan, Cost, Target, Verdict};
 use liestep_late::{Declaration, Late, numbers};
@@ -328,7 +328,7 @@ fn a_text_is_planned_as_what_is_compiled() {
     let top = RigidBody { J_d } + Gravity { m: 0.5, g: 2.0, rho: Vector3::new(0.1, 0.0, 0.3), up: Vector3::z() };
     let terms =
         [RigidBody::<f64>::DECLARATION, Gravity::<f64>::DECLARATION].map(Declaration::parse).map(Result::unwrap);
-    let late = Declaration::sum(&terms).and_then(Late::<SO3, ((), Vector3<f64>), WithEitherKinetic>::of);
+    let late = Declaration::sum(&terms).and_then(Late::<SO3, ((), Vector3<f64>), WithKinetic>::of);
     let late = late.and_then(|late| late.with_all(&numbers(&top))?.differentiable()).expect("a text");
     let costs = [cost(top), cost(late)];
     assert!(costs.iter().all(|cost| (cost / 1.473_736_859_111_866 - 1.0).abs() < 1e-12), "{costs:?}");

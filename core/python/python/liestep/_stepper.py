@@ -408,11 +408,11 @@ class _Search(Stepper):
         if not scene.is_self_adjoint:
             return self._by_own_steps(start, course, names)
         made = scene.ask(self.tolerance, start, course)
-        about = f"steps of {made['step']:.4g} s by {made['method']}"
+        kind, name = made["method"]
+        about = f"steps of {made['step']:.4g} s by {' '.join(filter(None, (kind, name)))}"
         run = _finished(self.term, made["step"], made, names, about)
-        run.method = _method(made["method"])
+        run.method = _method(kind, name)
         return run
-
 
     def _by_own_steps(self, start: _Start, course: _Course, names: list[str]) -> Run:
         """Ever more of the declared steps, until their error is small enough."""
@@ -440,15 +440,12 @@ def accurate(term: Sum, tolerance: float, **run: Any) -> Run:
     return _Search(term, tolerance).run(**run)
 
 
-def _method(name: str) -> dict[str, Any]:
-    """The arguments of `Stepper` for what the search calls a method."""
-    if name in ("its own step", "exact"):
-        # Nothing is kicked: any splitting is the exact motion.
-        return {} if name == "its own step" else {"splitting": "Strang"}
-    if stages := re.search(r"(\d+) stages", name):
-        return {"collocation": int(stages[1])}
-    scheme = name.removeprefix("exact, ")
-    return {kind: scheme for kind, known in schemes().items() if scheme in known}
+def _method(kind: str, name: str) -> dict[str, Any]:
+    """The arguments of `Stepper` for a scheme."""
+    if kind == "exact":
+        # Without kicks any splitting is the exact motion.
+        return {"splitting": "Strang"}
+    return {} if kind == "step" else {kind: int(name) if kind == "collocation" else name}
 
 
 def schemes() -> dict[str, list[str]]:

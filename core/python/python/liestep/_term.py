@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ._arrays import text
+from ._arrays import floats, text
 from ._control import Control
 from ._declared import Group, Sum, Summand, Value, _value
 from ._ensemble import Ensemble
@@ -87,7 +87,13 @@ class Term(Sum):
 
 
 def _declared(
-    role: str, group: Group, head: str, given: Any, advected: Mapping[str, str] | None, numbers: Mapping[str, Value]
+    role: str,
+    group: Group,
+    head: str,
+    given: Any,
+    advected: Mapping[str, str] | None,
+    numbers: Mapping[str, Value],
+    generators: Any = None,
 ) -> Term:
     """A term of a text, whose mistakes have their lines."""
     own_text = text(head.rpartition(" ")[2], given)
@@ -95,6 +101,8 @@ def _declared(
         if not isinstance(names, Mapping) and not (name == "group" and isinstance(names, str)):
             raise DeclarationError(f"`{name}` are texts by names, as {{\"w\": \"up\"}}, not {names!r:.80}")
     on = f"group = {group}" if isinstance(group, str) else f"group({', '.join(f'{n} = {g}' for n, g in group.items())})"
+    if generators is not None:
+        on += f", generators = {_generators(group, generators)}"
     sources = ", ".join(f"{name} = {source}" for name, source in (advected or {}).items())
     carried = f"advected({sources}), " if sources else ""
     if head.startswith("pace = "):
@@ -113,9 +121,20 @@ def _declared(
         raise (DeclarationError.of(own) if own else error) from None
 
 
+def _generators(group: Group, generators: Any) -> str:
+    """A basis of a group's Lie algebra as text."""
+    if not isinstance(group, str):
+        raise DeclarationError("`generators` are those of one group: give its name as a text")
+    basis = floats("generators", generators, DeclarationError)
+    if basis.ndim != 3 or basis.shape[1] != basis.shape[2]:
+        raise DeclarationError(f"`generators` are a list of square matrices, and have the shape {basis.shape}")
+    return repr(basis.tolist())
+
+
 def lagrangian(
     group: Group,
     *,
+    generators: Any = None,
     advected: Mapping[str, str] | None = None,
     l_d: str | None = None,
     l: str | None = None,  # noqa: E741
@@ -129,7 +148,10 @@ def lagrangian(
     Parameters
     ----------
     group : str or mapping
-        ``"SO3"``, ``"SE3"``, …; of several bodies a name for each increment: ``{"F_1": "SO3", "F_2": "R3"}``.
+        ``"SO3"``, ``"SE3"``, …; of several bodies a name for each increment: ``{"F_1": "SO3", "F_2": "R3"}``; or a name of
+        your own with `generators`.
+    generators : array_like, optional
+        A basis of the Lie algebra of a group of your own: square matrices.
     advected : mapping, optional
         What is carried along: the name that the body sees it by, and the parameter that it is in space.
     l_d : str
@@ -164,6 +186,18 @@ def lagrangian(
     >>> run = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=10)
     >>> bool(abs(run["energy"] - run["energy"][0]).max() < 1e-2)
     True
+
+    A flow of linear maps of volume one, on a group of your own:
+
+    >>> import numpy as np
+    >>> unit = lambda i, j: np.eye(3)[[i]].T @ np.eye(3)[[j]]
+    >>> basis = [unit(i, j) for i in range(3) for j in range(3) if i != j] + [unit(k, k) - unit(2, 2) for k in range(2)]
+    >>> flow = ls.lagrangian("SL3", generators=basis, K=np.diag([1, 2, 3]),
+    ...     l_d="(((F - I) * K * (F - I).transpose()).trace()"
+    ...         " + ((I - inverse(F)) * K * (I - inverse(F)).transpose()).trace()) / (4 * h)")
+    >>> run = flow.stepper(0.01).run(velocity=np.full(8, 0.1), until=1)
+    >>> run.attitude.shape, bool(abs(np.linalg.det(run.attitude) - 1).max() < 1e-13)
+    ((101, 3, 3), True)
     """
     if (l_d is None) == (l is None) or (l is None) != (discretise is None):
         raise DeclarationError("a Lagrangian has `l_d`, or `l` with `discretise`")
@@ -178,13 +212,14 @@ def lagrangian(
     if pace is not None:
         head = f"pace = {{ {pace} }}, {head}"
         numbers["E_0_of_the_start"] = ("f64", (0.0,))
-    return _declared("lagrangian", group, head, l_d if l is None else l, advected, numbers)
+    return _declared("lagrangian", group, head, l_d if l is None else l, advected, numbers, generators)
 
 
 def force(
     group: Group,
     *,
     work: str,
+    generators: Any = None,
     advected: Mapping[str, str] | None = None,
     displacement: str | None = None,
     **parameters: Any,
@@ -193,7 +228,7 @@ def force(
 
     Parameters
     ----------
-    group, advected, **parameters
+    group, generators, advected, **parameters
         As of `lagrangian`.
     work : str
         Linear in ``eta`` and ``eta_next``.
@@ -212,4 +247,4 @@ def force(
     head = "work"
     if displacement:
         head = f"displacement({displacement}), work"
-    return _declared("force", group, head, work, advected, numbers)
+    return _declared("force", group, head, work, advected, numbers, generators)

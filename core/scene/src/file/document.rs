@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use liestep::with::Scheme;
 use liestep_derivation::Role;
 use serde::Deserialize as _;
 use toml::de::Deserializer;
@@ -10,7 +11,7 @@ use crate::file::body::Kinetic;
 use crate::file::column::Column;
 use crate::file::effects::Table as _;
 use crate::file::lagrangian::take;
-use crate::file::method::{Method, Scheme as _};
+use crate::file::method::kind;
 use crate::file::mistake::{Mistake, Wrong, place_of};
 use crate::file::scene::{Origin, Places, SceneFile};
 use crate::file::schedule::{Pace, equal_steps, fraction};
@@ -65,7 +66,7 @@ const METHODS: &str = "is no method of a scene: `method` is \"step\", or a table
 /// The name of a method without a table, other than `step`.
 fn named_method(document: &Document<'_>) -> Option<String> {
     let name = document.get_ref().get("run")?.get_ref().get("method")?.get_ref().as_str()?;
-    (name != "step").then(|| name.to_owned())
+    name.parse::<Scheme>().is_err().then(|| name.to_owned())
 }
 
 fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
@@ -142,7 +143,7 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             );
             return wrong(&["run", "accuracy"], message);
         }
-        if !matches!(file.run.method, Method::Step) {
+        if !matches!(file.run.method, Scheme::Step) {
             let message = format!("{name} turns, with which every method is of second order; leave `method` out");
             return wrong(&["run", "method"], message);
         }
@@ -181,36 +182,36 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             let message = "a pace is that of the whole motion, and a force has another time: leave one of both out";
             return wrong(&["force"], message.to_owned());
         }
-        if lagrangian.has_a_pace && !matches!(method, Method::Step) {
+        if lagrangian.has_a_pace && !matches!(method, Scheme::Step) {
             let message = "a pace is that of the Lagrangian's own step: leave `method` out";
             return wrong(&["run", "method"], message.to_owned());
         }
-        if !matches!(method, Method::Step | Method::Composition(_)) {
-            let message = format!("{} moves a body of the library; leave it out", method.name());
+        if !matches!(method, Scheme::Step | Scheme::Composition(_)) {
+            let message = format!("{} moves a body of the library; leave it out", kind(method));
             return wrong(&["run", "method"], message);
         }
-        if matches!(method, Method::Composition(_)) && !lagrangian.declaration.is_self_adjoint {
+        if matches!(method, Scheme::Composition(_)) && !lagrangian.declaration.is_self_adjoint {
             let message = "only steps that undo those of −h can be composed, and those of this Lagrangian don't";
             return wrong(&["run", "method"], message.to_owned());
         }
     }
-    if !matches!(method, Method::Step)
+    if !matches!(method, Scheme::Step)
         && let Some(force) = file.first_force()
     {
-        let name = method.name();
+        let name = kind(method);
         return wrong(&["run", "method"], format!("{name} needs a conservative scene; {force} does work"));
     }
-    if let Method::Composition(scheme) = method
-        && scheme.0.base() != file.order()
+    if let Scheme::Composition(scheme) = method
+        && scheme.base() != file.order()
     {
-        let (name, base, order) = (scheme.0.called(), scheme.0.base(), file.order());
+        let (name, base, order) = (scheme.name(), scheme.base(), file.order());
         let message = format!("{name} composes a step of order {base}, and that of this scene is of order {order}");
         return wrong(&["run", "method"], message);
     }
-    if let Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_) = method
+    if let Scheme::Splitting(_) | Scheme::Processed(_) | Scheme::Collocation(_) | Scheme::Exact = method
         && file.kinetic() != Kinetic::Rigid
     {
-        let message = format!("{} moves the body exactly; leave `kinetic` out", method.name());
+        let message = format!("{} moves the body exactly; leave `kinetic` out", kind(method));
         return wrong(&["body", "kinetic"], message);
     }
     None

@@ -40,12 +40,12 @@ struct EventTable {
     tilt: Option<Scalar<Angle>>,
     speed: Option<Positive<Rate>>,
     energy: Option<Scalar<Energy>>,
-    velocity_1: Option<Scalar<Rate>>,
-    velocity_2: Option<Scalar<Rate>>,
-    velocity_3: Option<Scalar<Rate>>,
-    axis_1: Option<Scalar<Number>>,
-    axis_2: Option<Scalar<Number>>,
-    axis_3: Option<Scalar<Number>>,
+    velocity_x: Option<Scalar<Rate>>,
+    velocity_y: Option<Scalar<Rate>>,
+    velocity_z: Option<Scalar<Rate>>,
+    axis_x: Option<Scalar<Number>>,
+    axis_y: Option<Scalar<Number>>,
+    axis_z: Option<Scalar<Number>>,
     #[serde(default)]
     direction: Direction,
     #[serde(default)]
@@ -60,18 +60,18 @@ impl TryFrom<EventTable> for Event {
             table.tilt.map(|angle| Quantity::Tilt(angle.value)),
             table.speed.map(|speed| Quantity::Speed(speed.value)),
             table.energy.map(|energy| Quantity::Energy(energy.value)),
-            table.velocity_1.map(|rate| Quantity::Velocity(0, rate.value)),
-            table.velocity_2.map(|rate| Quantity::Velocity(1, rate.value)),
-            table.velocity_3.map(|rate| Quantity::Velocity(2, rate.value)),
-            table.axis_1.map(|part| Quantity::Axis(0, part.value)),
-            table.axis_2.map(|part| Quantity::Axis(1, part.value)),
-            table.axis_3.map(|part| Quantity::Axis(2, part.value)),
+            table.velocity_x.map(|rate| Quantity::Velocity(0, rate.value)),
+            table.velocity_y.map(|rate| Quantity::Velocity(1, rate.value)),
+            table.velocity_z.map(|rate| Quantity::Velocity(2, rate.value)),
+            table.axis_x.map(|part| Quantity::Axis(0, part.value)),
+            table.axis_y.map(|part| Quantity::Axis(1, part.value)),
+            table.axis_z.map(|part| Quantity::Axis(2, part.value)),
         ]
         .into_iter()
         .flatten();
         let (Some(quantity), None) = (quantities.next(), quantities.next()) else {
-            return Err("an event has one of `tilt`, `speed`, `energy`, `velocity_1`, `velocity_2`, `velocity_3`, \
-                        `axis_1`, `axis_2`, `axis_3`");
+            return Err("an event has one of `tilt`, `speed`, `energy`, `velocity_x`, `velocity_y`, `velocity_z`, \
+                        `axis_x`, `axis_y`, `axis_z`");
         };
         // An event's name is the name of a column.
         let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);

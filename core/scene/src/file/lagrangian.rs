@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use liestep::SO3;
 use liestep::groups::Given;
-use liestep::mechanics::{Effect as _, Inertia, KineticPart, Term as _, WithEitherKinetic, WithoutKinetic};
+use liestep::mechanics::{Effect as _, Inertia, KineticPart, Term as _, WithKinetic, WithoutKinetic};
 use liestep_derivation::Role;
 use liestep_late::{Declaration, Late, LateError};
 use nalgebra::{Matrix3, Vector3};
@@ -45,7 +45,7 @@ impl Declared {
     }
 
     /// The effect with a pace, which advects its energy, too.
-    pub(crate) fn paced(&self) -> Result<Late<SO3, SeenWithEnergy, WithEitherKinetic, Backend>, LateError> {
+    pub(crate) fn paced(&self) -> Result<Late<SO3, SeenWithEnergy, WithKinetic, Backend>, LateError> {
         Late::of(self.declaration)?.with_all(&self.numbers)
     }
 
@@ -54,7 +54,7 @@ impl Declared {
         if self.has_a_pace {
             return self.paced().ok().map(|late| late.inertia(&late.advected()));
         }
-        self.late::<WithEitherKinetic>().ok().map(|late| late.inertia(&late.advected()))
+        self.late::<WithKinetic>().ok().map(|late| late.inertia(&late.advected()))
     }
 }
 
@@ -162,7 +162,7 @@ fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declare
     let fits = match role {
         Role::Force => declared.late::<WithoutKinetic>().map(|_| ()),
         _ if has_a_pace => declared.paced().map(|_| ()),
-        _ => declared.late::<WithEitherKinetic>().map(|_| ()),
+        _ => declared.late::<WithKinetic>().map(|_| ()),
     };
     fits.map_err(wrong).map(|()| declared)
 }

@@ -1,112 +1,71 @@
-//! The methods that a file can name.
+//! The methods that a file can name: a text, as [`Scheme`] reads it, or a table of a kind and a name.
 
-use liestep::methods::{CompositionScheme, ProcessedScheme, SplittingScheme};
-use serde::Deserialize;
+use std::fmt;
 
-/// The stepping method, by the names of [`liestep::methods`].
-#[derive(Clone, Copy, Default, Deserialize)]
+use liestep::with::{Scheme, UnknownMethod};
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Error, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+/// A scheme by its kind.
+#[derive(Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub(crate) enum Method {
-    /// The scene's own step.
-    #[default]
-    Step,
-    Composition(Named<CompositionScheme>),
-    /// A splitting with the exact motion of the free body.
-    Splitting(Named<SplittingScheme>),
-    /// A splitting with the exact motion of the free body, with a processor.
-    Processed(Named<ProcessedScheme>),
-    /// A collocation, by its number of stages.
-    Collocation(Stages),
+enum ByKind {
+    #[serde(deserialize_with = "composition")]
+    Composition(Scheme),
+    #[serde(deserialize_with = "splitting")]
+    Splitting(Scheme),
+    #[serde(deserialize_with = "processed")]
+    Processed(Scheme),
+    #[serde(deserialize_with = "collocation")]
+    Collocation(Scheme),
 }
 
-impl Method {
-    /// The method of an offer for an accuracy, by the offer's name.
-    pub(crate) fn of_offer(name: &str) -> Option<Self> {
-        fn named<S: Scheme>(name: &str) -> Option<Named<S>> {
-            S::ALL.iter().find(|scheme| scheme.called() == name).copied().map(Named)
-        }
-        match (name, name.strip_prefix("exact, ")) {
-            ("its own step", _) => Some(Self::Step),
-            ("exact", _) => Some(Self::Splitting(Named(SplittingScheme::STRANG))),
-            ("Gauss, 4 stages", _) => Some(Self::Collocation(Stages::Four)),
-            ("Gauss, 8 stages", _) => Some(Self::Collocation(Stages::Eight)),
-            (_, Some(split)) => named(split).map(Self::Splitting).or_else(|| named(split).map(Self::Processed)),
-            _ => named(name).map(Self::Composition),
-        }
-    }
-
-    /// The kind of method in words, with an article.
-    pub(crate) fn name(&self) -> &'static str {
-        match self {
-            Self::Step => "a step",
-            Self::Composition(_) => "a composition",
-            Self::Splitting(_) | Self::Processed(_) => "a splitting",
-            Self::Collocation(_) => "a collocation",
-        }
-    }
-}
-
-/// A scheme by its name.
-#[derive(Clone, Copy, Deserialize)]
-#[serde(try_from = "String", bound = "S: Scheme")]
-pub(crate) struct Named<S: Scheme>(pub(crate) S);
-
-pub(crate) trait Scheme: Copy + 'static {
-    const ALL: &'static [Self];
-
-    fn called(&self) -> &'static str;
-}
-
-impl<S: Scheme> TryFrom<String> for Named<S> {
-    type Error = String;
-
-    fn try_from(wanted: String) -> Result<Self, String> {
-        S::ALL.iter().find(|scheme| scheme.called().eq_ignore_ascii_case(&wanted)).copied().map(Self).ok_or_else(|| {
-            let names: Vec<_> = S::ALL.iter().map(|scheme| format!("`{}`", scheme.called())).collect();
-            format!("unknown scheme `{wanted}`, expected one of {}", names.join(", "))
-        })
-    }
-}
-
-macro_rules! schemes {
-    ($($scheme:ident)+) => {$(
-        impl Scheme for $scheme {
-            const ALL: &'static [Self] = &$scheme::ALL;
-
-            fn called(&self) -> &'static str {
-                self.name()
-            }
+macro_rules! by_kind {
+    ($($kind:ident: $type:ty),+) => {$(
+        fn $kind<'de, D: Deserializer<'de>>(source: D) -> Result<Scheme, D::Error> {
+            let name = <$type>::deserialize(source)?.to_string();
+            Scheme::named(stringify!($kind), &name).map_err(Error::custom)
         }
     )+};
 }
 
-schemes! { CompositionScheme SplittingScheme ProcessedScheme }
+by_kind! { composition: String, splitting: String, processed: String, collocation: i64 }
 
-/// The numbers of stages that fill the machine's vectors.
-#[derive(Clone, Copy, Deserialize)]
-#[serde(try_from = "i64")]
-pub(crate) enum Stages {
-    Four,
-    Eight,
-}
+struct AnyForm;
 
-impl Stages {
-    pub(crate) fn order(self) -> u32 {
-        match self {
-            Self::Four => 8,
-            Self::Eight => 16,
-        }
+impl<'de> Visitor<'de> for AnyForm {
+    type Value = Scheme;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a method: \"step\", or a table of a kind and a name")
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<Scheme, E> {
+        text.parse().map_err(|unknown: UnknownMethod| E::custom(unknown))
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, map: M) -> Result<Scheme, M::Error> {
+        let (ByKind::Composition(scheme)
+        | ByKind::Splitting(scheme)
+        | ByKind::Processed(scheme)
+        | ByKind::Collocation(scheme)) = ByKind::deserialize(MapAccessDeserializer::new(map))?;
+        Ok(scheme)
     }
 }
 
-impl TryFrom<i64> for Stages {
-    type Error = &'static str;
+/// The scheme of the key `method`.
+pub(crate) fn scheme<'de, D: Deserializer<'de>>(source: D) -> Result<Scheme, D::Error> {
+    source.deserialize_any(AnyForm)
+}
 
-    fn try_from(stages: i64) -> Result<Self, &'static str> {
-        match stages {
-            4 => Ok(Self::Four),
-            8 => Ok(Self::Eight),
-            _ => Err("a collocation has 4 or 8 stages"),
-        }
+/// The kind of method in words, with an article.
+pub(crate) const fn kind(scheme: &Scheme) -> &'static str {
+    match scheme {
+        Scheme::Step => "a step",
+        Scheme::Exact => "the exact motion",
+        Scheme::Composition(_) => "a composition",
+        Scheme::Splitting(_) | Scheme::Processed(_) => "a splitting",
+        Scheme::Collocation(_) => "a collocation",
     }
 }

@@ -1,6 +1,5 @@
 //! Scene files: the tables of a document as types, and the mistakes in them with their places.
 
-pub(crate) mod arrangement;
 pub(crate) mod body;
 pub(crate) mod column;
 pub(crate) mod document;

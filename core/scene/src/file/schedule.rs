@@ -2,9 +2,10 @@
 
 use std::num::NonZeroU32;
 
+use liestep::with::Scheme;
 use serde::Deserialize;
 
-use crate::file::method::Method;
+use crate::file::method::scheme;
 use crate::file::quantity::{Duration, Number, Positive, Rate, short};
 
 /// The duration, the steps and the method.
@@ -16,7 +17,7 @@ pub(crate) struct Schedule {
     pub(crate) pace: Pace,
     /// Whether the file gives neither step nor accuracy, so that the program chooses both.
     pub(crate) is_left_open: bool,
-    pub(crate) method: Method,
+    pub(crate) method: Scheme,
     /// Number of steps per orbit, which replace equal steps.
     pub(crate) steps_per_orbit: Option<NonZeroU32>,
     /// Density that varies the lengths of the steps; `step` is the first of them.
@@ -48,8 +49,8 @@ struct ScheduleTable {
     steps_per_orbit: Option<NonZeroU32>,
     density: Option<Density>,
     duration: Positive<Duration>,
-    #[serde(default)]
-    method: Method,
+    #[serde(default, deserialize_with = "scheme")]
+    method: Scheme,
 }
 
 /// Default accuracy of a run without a step: at the end the attitude is off by about 1e-6 rad.

@@ -5,13 +5,11 @@ use std::path::{Path, PathBuf};
 
 use liestep::NonstandardInertia;
 use liestep::mechanics::Inertia;
-use liestep::methods::{BallJoint, Joint, PinJoint};
 use liestep::recording;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::arrangement::{Arrangement, BODIES, LOOPS};
 use crate::file::body::{Full, INERTIA, Kinetic, Moments, Nonstandard};
 use crate::file::column::{Column, Output};
 use crate::file::mistake::{Mistake, Wrong, advised, place_of};
@@ -23,23 +21,20 @@ use crate::file::schedule::{equal_steps, fraction};
 use crate::file::start::Start;
 use crate::file::text::title;
 
-/// Most springs of a file.
-pub(crate) const SPRINGS: usize = 16;
-
 /// Several bodies, with joints and springs between them.
 ///
 /// | table | keys |
 /// |---|---|
 /// | | `title` |
-/// | `[[body]]`, up to eight | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile) |
+/// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile) |
 /// | `gravity` | `g`, m/s²; `up`, in space |
-/// | `[[joint]]`, up to four more than make a tree | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` of a pin: an axis in each of the same frames |
-/// | `[[spring]]`, up to sixteen | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
+/// | `[[joint]]` | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` of a pin: an axis in each of the same frames |
+/// | `[[spring]]` | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
 /// | `run` | `duration`; `step`, of which the duration is a whole number; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
 /// | `picture` | `plane`: `xy`, `xz`, `yz`; by default the plane in which the motion is the widest |
 /// | `output` | `columns` that follow the time in a table, see [`Column`]; `every`: the number of steps from row to row |
 ///
-/// Joints may form up to four loops. Other effects on several bodies need a program: [`liestep::Stepper::jointed`].
+/// Joints may form loops. Other effects on several bodies need a program: [`liestep::methods::Multibody`].
 #[derive(Clone)]
 pub struct System {
     pub(crate) title: String,
@@ -55,7 +50,6 @@ pub struct System {
     pub(crate) columns: Vec<Column>,
     pub(crate) path: PathBuf,
     pub(crate) places: SystemPlaces,
-    pub(crate) arrangement: Arrangement,
 }
 
 /// Lines and columns of tables, from one.
@@ -86,12 +80,11 @@ pub(crate) struct Between<T> {
     pub(crate) of: T,
 }
 
-/// The points of a joint, and the axes of a pin, in the frames of its two bodies.
-pub(crate) fn ends_and_axes(joint: &Joint) -> ([Vector3<f64>; 2], Option<[Vector3<f64>; 2]>) {
-    match joint {
-        Joint::Ball(ball) => ([ball.above, ball.below], None),
-        Joint::Pin(pin) => ([pin.above, pin.below], Some([pin.axis_above, pin.axis_below])),
-    }
+/// A joint of a point of one body with a point of another, from their centres of mass, and of an axis of each for a pin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Joint {
+    pub(crate) at: [Vector3<f64>; 2],
+    pub(crate) axes: Option<[Vector3<f64>; 2]>,
 }
 
 /// A spring between two points, from their centres of mass.
@@ -229,7 +222,7 @@ impl System {
     }
 
     pub(crate) fn has_pins(&self) -> bool {
-        self.joints.iter().any(|joint| matches!(joint.of, Joint::Pin(_)))
+        self.joints.iter().any(|joint| joint.of.axes.is_some())
     }
 
     /// A description of the parts, in words.
@@ -248,12 +241,6 @@ impl System {
 }
 
 fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<System, Wrong> {
-    if let Some(body) = table.body.get(BODIES) {
-        return Err((body.span(), format!("a file has up to {BODIES} bodies; a program may have any number")));
-    }
-    if let Some(spring) = table.spring.get(SPRINGS) {
-        return Err((spring.span(), format!("a file has up to {SPRINGS} springs; a program may have any number")));
-    }
     let (mut bodies, mut names): (Vec<SystemBody>, Vec<Range<usize>>) = Default::default();
     for body in table.body {
         let body = body_of(body)?;
@@ -272,15 +259,8 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         let message = format!("two columns of the table would be called `{name}`: give the body another name");
         return Err((names[body].clone(), message));
     }
-    let spans: Vec<Range<usize>> = table.joint.iter().map(Spanned::span).collect();
     let joints: Vec<_> =
         table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies)).collect::<Result<_, _>>()?;
-    let arrangement = Arrangement::of(joints.iter().map(|joint| joint.bodies)).map_err(|joint| {
-        let message = format!(
-            "this joint closes one loop more than the {LOOPS} that a file may have; a program may have any number"
-        );
-        (spans[joint].clone(), message)
-    })?;
     let springs = table.spring.into_iter().map(|spring| {
         let SpringTable { bodies: names, at, k, length } = spring.into_inner();
         let spring = Spring { k: k.value, length: length.value, at: at.map(|point| point.value) };
@@ -307,7 +287,6 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         columns,
         path: path.to_owned(),
         places,
-        arrangement,
     })
 }
 
@@ -384,17 +363,15 @@ fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<Between<Joint>, 
             axes.swap(0, 1);
         }
     }
-    let [above, below] = ends;
-    let of = match (kind.get_ref(), axes_of) {
-        (Kind::Ball, None) => Joint::Ball(BallJoint { above, below }),
-        (Kind::Pin, Some([axis_above, axis_below])) => Joint::Pin(PinJoint { above, below, axis_above, axis_below }),
-        (Kind::Ball, Some(_)) => {
-            let span = axes.map_or_else(|| kind.span(), |axes| axes.span());
-            return Err((span, "a ball joint turns about any axis; leave `axes` out, or make it a `pin`".to_owned()));
+    match (kind.get_ref(), axes) {
+        (Kind::Ball, Some(axes)) => {
+            let message = "a ball joint turns about any axis; leave `axes` out, or make it a `pin`";
+            return Err((axes.span(), message.to_owned()));
         }
         (Kind::Pin, None) => {
             return Err((kind.span(), "a pin has `axes`: that of each of its bodies, in that body's frame".to_owned()));
         }
-    };
-    Ok(Between { bodies: between, of })
+        _ => (),
+    }
+    Ok(Between { bodies: between, of: Joint { at: ends, axes: axes_of } })
 }

@@ -1,21 +1,14 @@
-//! The bodies of a file in a system of one of a few sizes. Padding bodies fill the size and stay at rest, and padding
-//! joints constrain nothing.
+//! The system of a file: its bodies, springs and joints.
 
-use std::array::from_fn;
-
-use liestep::groups::{LieGroup as _, R3};
-use liestep::mechanics::{Each, Inertia, Placement, Sum};
-use liestep::methods::{Joint, JointedBodies, Joints, PlacedJoint};
-use liestep::motion::Integrator;
-use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
+use liestep::groups::R3;
+use liestep::mechanics::Inertia;
+use liestep::methods::{BallJoint, Multibody, MultibodyStepper, PinJoint};
+use liestep::{NonstandardInertia, SO3, SetupError, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
-use crate::file::arrangement::Arrangement;
 use crate::file::body::Kinetic;
-use crate::file::system::{Between, System, SystemBody};
+use crate::file::system::{Between, Joint, Spring, System, SystemBody};
 use crate::run::nearest::Moving;
-use crate::run::springs::Springs;
 
 /// A body with its weight. One of the three kinetic terms has the factor one, the others zero.
 #[lagrangian(
@@ -46,42 +39,66 @@ pub(crate) struct Heavy {
     pub(crate) up: Vector3<f64>,
 }
 
-type Parts<const N: usize> = Sum<Placement<Each<N>, Heavy, N>, Springs<N>>;
-pub(crate) type SystemStepper<const N: usize, const L: usize> =
-    Stepper<Parts<N>, JointedBodies<Parts<N>, Link, 5, N, N, L>>;
+/// A spring between a point of one body and a point of another, which mustn't meet.
+#[lagrangian(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
+    l_d = -0.25 * h * k * (((r + R_2 * at_2 - R_1 * at_1).norm() - length).powi(2)
+        + ((r + d_2 - d_1 + R_2 * F_2 * at_2 - R_1 * F_1 * at_1).norm() - length).powi(2)),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Coil {
+    /// Stiffness, N/m.
+    k: f64,
+    /// Length at rest, m.
+    length: f64,
+    /// The ends, from the centres of mass in the frames of the bodies, m.
+    at_1: Vector3<f64>,
+    at_2: Vector3<f64>,
+}
 
-type StateOf<const N: usize, const L: usize> = <SystemStepper<N, L> as Integrator>::State;
-
-/// A joint; `None` is padding.
-type Link = Option<Joint>;
-
-impl Arrangement {
-    fn joints<const N: usize, const L: usize>(&self, joints: &[Between<Joint>]) -> Joints<Link, N, L> {
-        let joined = |&number: &usize| {
-            let between = &joints[number];
-            let [above, below] = between.bodies;
-            PlacedJoint { joint: Some(between.of), above, below: below.unwrap_or_default() }
-        };
-        let loose = |below: usize| PlacedJoint::to_space(None, below);
-        let of_tree =
-            |place: usize| self.tree.get(place).map_or_else(|| loose(self.free[place - self.tree.len()]), joined);
-        Joints::tree(from_fn(of_tree))
-            .closed_by(from_fn(|place| self.loops.get(place).map_or_else(|| loose(0), joined)))
-    }
+/// A spring whose length at rest is zero: its ends may meet.
+#[lagrangian(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
+    l_d = -0.25 * h * k * ((r + R_2 * at_2 - R_1 * at_1).norm_squared()
+        + (r + d_2 - d_1 + R_2 * F_2 * at_2 - R_1 * F_1 * at_1).norm_squared()),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cord {
+    /// Stiffness, N/m.
+    k: f64,
+    /// The ends, from the centres of mass in the frames of the bodies, m.
+    at_1: Vector3<f64>,
+    at_2: Vector3<f64>,
 }
 
 impl System {
-    pub(crate) fn stepper<const N: usize, const L: usize>(&self) -> Result<SystemStepper<N, L>, SetupError> {
+    pub(crate) fn stepper(&self) -> Result<MultibodyStepper, SetupError> {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
-        // Padding bodies copy the first body, feel no gravity and stay at rest.
-        let heavy = |place: usize| {
-            let (body, g) = self.bodies.get(place).map_or((&self.bodies[0], 0.0), |body| (body, g));
+        let mut system = Multibody::new();
+        for body in &self.bodies {
             let is = |kinetic| f64::from(u8::from(body.kinetic == kinetic));
             let [rigid, geodesic, cayley] = [Kinetic::Rigid, Kinetic::Geodesic, Kinetic::Cayley].map(is);
-            Heavy { J: body.J, J_d: body.J.to_nonstandard(), rigid, geodesic, cayley, m: body.m, g, up }
-        };
-        let parts = Each::<N>::of(from_fn::<_, N, _>(heavy)) + Springs::of(&self.springs);
-        Stepper::jointed(parts, self.arrangement.joints(&self.joints), self.step)
+            system.body(Heavy { J: body.J, J_d: body.J.to_nonstandard(), rigid, geodesic, cayley, m: body.m, g, up });
+        }
+        for &Between { bodies, of: Spring { k, length, at: [at_1, at_2] } } in &self.springs {
+            if length == 0.0 {
+                system.between(bodies, Cord { k, at_1, at_2 });
+            } else {
+                system.between(bodies, Coil { k, length, at_1, at_2 });
+            }
+        }
+        for &Between { bodies: [above, below], of: Joint { at, axes } } in &self.joints {
+            let (ball, below) = (BallJoint { above: at[0], below: at[1] }, below.unwrap_or_default());
+            if let Some([axis_above, axis_below]) = axes {
+                let pin = PinJoint { above: ball.above, below: ball.below, axis_above, axis_below };
+                system.join(pin, above, below);
+            } else {
+                system.join(ball, above, below);
+            }
+        }
+        system.stepper(self.step)
     }
 
     /// The file's initial configurations and velocities.
@@ -95,22 +112,16 @@ impl System {
     }
 
     /// The initial state of the file. With `nearest`, it is the nearest state that satisfies the constraints.
-    pub(crate) fn start<const N: usize, const L: usize>(
-        &self,
-        stepper: &SystemStepper<N, L>,
-    ) -> Result<StateOf<N, L>, SetupError> {
-        let padded = |bodies: &[Moving]| {
-            let resting = ((SO3::identity(), R3::identity()), Vector6::zeros());
-            let all: [_; N] = from_fn(|place| bodies.get(place).copied().unwrap_or(resting));
-            (all.map(|(body, _)| body), Bodies(all.map(|(_, velocity)| velocity)))
-        };
-        let given = self.given();
-        let (bodies, velocities) = padded(&given);
-        let started = stepper.start(bodies, velocities);
+    pub(crate) fn start(&self, stepper: &MultibodyStepper) -> Result<Box<[f64]>, SetupError> {
+        let (bodies, velocities): (Vec<_>, Vec<_>) = self.given().into_iter().unzip();
+        let started = stepper.start(&bodies, &velocities);
         if !self.nearest {
             return started;
         }
-        let (bodies, velocities) = if started.is_ok() { (bodies, velocities) } else { padded(&self.shifted(given)) };
-        stepper.start_nearest(bodies, velocities)
+        if started.is_ok() {
+            return stepper.start_nearest(&bodies, &velocities);
+        }
+        let (bodies, velocities): (Vec<_>, Vec<_>) = self.shifted(self.given()).into_iter().unzip();
+        stepper.start_nearest(&bodies, &velocities)
     }
 }

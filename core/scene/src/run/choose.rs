@@ -5,19 +5,16 @@ use std::rc::Rc;
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
-use liestep::mechanics::{
-    Effect, Inertia, KineticPart, OnlyKicks, Regular, Term as _, WithEitherKinetic, WithKinetic, WithoutKinetic,
-};
-use liestep::methods::ExactBody;
+use liestep::mechanics::{Effect, Inertia, KineticPart, OnlyKicks, Term as _, WithKinetic, WithoutKinetic};
+use liestep::methods::SplittingScheme;
 use liestep::motion::AnyStepper;
-use liestep::with::densities;
+use liestep::with::{Method, Scheme, densities};
 use liestep::{SO3, StateOf, Stepper};
 use liestep_late::{Declaration, Late, LateError, Slots};
 use nalgebra::Vector3;
 
 use crate::file::body::{Distribution, Kinetic};
 use crate::file::lagrangian::Backend;
-use crate::file::method::{Method, Stages};
 use crate::file::scene::SceneFile;
 use crate::file::schedule::{Density, Pace};
 use crate::run::course::{MemberStart, course, sample, watches};
@@ -31,13 +28,13 @@ type Program<K, W = Seen> = Late<SO3, W, K, Backend>;
 /// The program of a file's effects and its force.
 type Rest<W = Seen> = Program<WithoutKinetic, W>;
 /// The program of all terms of a scene.
-pub type Whole<K = WithEitherKinetic, W = Seen> = Program<K, W>;
+pub type Whole<W = Seen> = Program<WithKinetic, W>;
 
-/// A [`Whole`] with at most one advected vector and a cheap Jacobian. Its states are shorter, so its steps are faster.
-pub type LeastWhole = Whole<WithKinetic, V>;
+/// A [`Whole`] with at most one advected vector. Its states are shorter, so its steps are faster.
+pub type LeastWhole = Whole<V>;
 
 /// The stepper of a member in lanes, and its initial state.
-pub type MemberInLanes<K, W> = (Stepper<Whole<K, W>>, StateOf<Whole<K, W>>);
+pub type MemberInLanes<W> = (Stepper<Whole<W>>, StateOf<Whole<W>>);
 
 /// The kinetic term: a Lagrangian of the file's own, or a library body by its text; with its parameters.
 #[derive(Clone)]
@@ -87,20 +84,15 @@ fn program<K: KineticPart, W: Advected<SO3> + Slots>(
 }
 
 /// The program of a scene for members of an ensemble in lanes. `None` for another method, for varying steps, for
-/// effects along orbits, and for terms that need another `K` or `W`.
-pub(crate) fn whole<K: KineticPart, W: Advected<SO3> + Slots>(file: &SceneFile) -> Option<Whole<K, W>> {
-    let is_of_one_kind = matches!(file.run.method, Method::Step) && !file.has_steps_of_its_own();
+/// effects along orbits, and for terms that need another `W`.
+pub(crate) fn whole<W: Advected<SO3> + Slots>(file: &SceneFile) -> Option<Whole<W>> {
+    let is_of_one_kind = matches!(file.run.method, Scheme::Step) && !file.has_steps_of_its_own();
     let J = inertia(file).ok().filter(|_| is_of_one_kind && file.turning().next().is_none())?;
     program(file, &J, Moving::of(file, J).ok().as_ref()).ok()?
 }
 
 /// The stepper of the program with this file's numbers, and the initial state.
-pub(crate) fn member<K, W>(file: &SceneFile, whole: &Whole<K, W>) -> Result<MemberInLanes<K, W>, Stop>
-where
-    W: Advected<SO3> + Slots,
-    K: KineticPart,
-    Whole<K, W>: Regular<Scalar = f64, Group = SO3>,
-{
+pub(crate) fn member<W: Advected<SO3> + Slots>(file: &SceneFile, whole: &Whole<W>) -> Result<MemberInLanes<W>, Stop> {
     let Pace::Step { step, .. } = file.run.pace else { return Err(nothing()) };
     file.check_kicks()?;
     let J = inertia(file)?;
@@ -137,26 +129,6 @@ fn late_error(error: LateError) -> Stop {
     }
 }
 
-/// A stepper of a scene with any advected vectors.
-trait SceneStepper {
-    /// Runs this many steps.
-    fn run(&self, file: &SceneFile, steps: u32, listeners: Listeners<'_>) -> Result<Run, Stop>;
-
-    /// The stepper as a type that all scenes share.
-    fn hiding_advected(&self) -> AnyStepper<SO3, ()>;
-}
-
-impl<A: Advected<SO3> + 'static> SceneStepper for AnyStepper<SO3, A> {
-    fn run(&self, file: &SceneFile, steps: u32, listeners: Listeners<'_>) -> Result<Run, Stop> {
-        let state = self.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
-        make(self, state, course(file, u64::from(steps)), sample, watches(file), listeners)
-    }
-
-    fn hiding_advected(&self) -> AnyStepper<SO3, ()> {
-        self.clone().hiding_advected()
-    }
-}
-
 /// Simulates a body and its effects. A body of (3.13) has a compiled step, and its effects are one program. All is one
 /// program for other kinetic terms, for a Lagrangian of the file's own, and where an effect enters the step's equation.
 ///
@@ -164,8 +136,14 @@ impl<A: Advected<SO3> + 'static> SceneStepper for AnyStepper<SO3, A> {
 pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
     match file.run.pace {
         Pace::Accuracy(tolerance) => ask(file, tolerance, listeners),
-        Pace::Step { step, steps } => by_steps(file, step)?.run(file, steps, listeners),
+        Pace::Step { step, steps } => by(&by_steps(file, step)?, file, steps, listeners),
     }
+}
+
+/// Runs this many steps of a stepper.
+fn by(stepper: &AnyStepper, file: &SceneFile, steps: u32, listeners: Listeners<'_>) -> Result<Run, Stop> {
+    let state = stepper.start_at(SO3::from(file.start.attitude), file.start.velocity).map_err(Stop::Start)?;
+    make(stepper, state, course(file, u64::from(steps)), sample, watches(file), listeners)
 }
 
 /// The stepper with the file's `step`, and the initial state.
@@ -174,27 +152,19 @@ pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
         return Err(Stop::Other("the step is chosen for an accuracy by trial runs".to_owned()));
     };
     file.check_kicks()?;
-    let stepper = by_steps(file, step)?.hiding_advected();
-    let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
+    let stepper = by_steps(file, step)?;
+    let state = stepper.start_at(SO3::from(file.start.attitude), file.start.velocity).map_err(Stop::Start)?;
     Ok((stepper, state))
 }
 
 macro_rules! any {
     ($stepper:expr) => {
-        $stepper.map(|stepper| Box::new(stepper.into_any()) as Box<dyn SceneStepper>).map_err(Stop::Setup)
+        $stepper.map(Stepper::into_any).map_err(Stop::Setup)
     };
 }
 
 /// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.
-fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
-    macro_rules! step {
-        ($scene:expr) => {
-            match file.run.method {
-                Method::Composition(scheme) => any!(Stepper::composed($scene, h, scheme.0)),
-                _ => any!(Stepper::new($scene, h)),
-            }
-        };
-    }
+fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
     macro_rules! turning {
         ($scene:expr, $values:expr) => {
             match file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok()) {
@@ -206,7 +176,8 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         };
     }
     let J = inertia(file)?;
-    if matches!(file.run.method, Method::Splitting(_) | Method::Processed(_) | Method::Collocation(_)) {
+    let method = Method::from(file.run.method);
+    if !matches!(method.scheme, Scheme::Step | Scheme::Composition(_)) {
         return with_exact_body(file, &J, h);
     }
     if let Some(Density::Turn(floor)) = file.run.density {
@@ -224,7 +195,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         let whole: Option<Whole> = program(file, &J, Some(&body)).map_err(late_error)?;
         let Some(whole) = whole else { return Err(nothing()) };
         if !turns {
-            return step!(whole);
+            return method.on_any_group(whole, h).map_err(Stop::Setup);
         }
         let scene = whole.clone();
         let values = move |time| {
@@ -243,7 +214,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
         return turning!(scene, values);
     }
     match (file.run.method, file.body.ok_or_else(nothing)?.mass) {
-        (Method::Step, Distribution::Principal(J_d)) => {
+        (Scheme::Step, Distribution::Principal(J_d)) => {
             let body = PrincipalBody { J_d };
             // The smallest type that fits makes the fastest steps.
             if let Ok(kicks) = program::<OnlyKicks, ()>(file, &J, None) {
@@ -258,8 +229,8 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
             }
         }
         _ => match rest::<Seen>(file, &J)? {
-            None => step!(RigidBody { J_d: J.to_nonstandard() }),
-            Some(rest) => step!(RigidBody { J_d: J.to_nonstandard() } + rest),
+            None => method.on_any_group(RigidBody { J_d: J.to_nonstandard() }, h).map_err(Stop::Setup),
+            Some(rest) => method.on_any_group(RigidBody { J_d: J.to_nonstandard() } + rest, h).map_err(Stop::Setup),
         },
     }
 }
@@ -270,15 +241,14 @@ fn nothing() -> Stop {
 }
 
 /// The stepper of a method that uses only the inertia and the potential.
-fn with_exact_body(file: &SceneFile, J: &Inertia, h: f64) -> Result<Box<dyn SceneStepper>, Stop> {
+fn with_exact_body(file: &SceneFile, J: &Inertia, h: f64) -> Result<AnyStepper, Stop> {
     let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, J)?;
-    match file.run.method {
-        Method::Step | Method::Composition(_) => any!(Stepper::new(scene, h)),
-        Method::Splitting(scheme) => any!(Stepper::split(scene, h, ExactBody::new(J), scheme.0)),
-        Method::Processed(scheme) => any!(Stepper::processed(scene, h, ExactBody::new(J), scheme.0)),
-        Method::Collocation(Stages::Four) => any!(Stepper::collocated::<2>(scene, h)),
-        Method::Collocation(Stages::Eight) => any!(Stepper::collocated::<4>(scene, h)),
-    }
+    let scheme = match file.run.method {
+        // The potential is zero.
+        Scheme::Exact if file.effects().next().is_none() => Scheme::Splitting(SplittingScheme::STRANG),
+        scheme => scheme,
+    };
+    Method::from(scheme).stepper(scene, h).map_err(Stop::Setup)
 }
 
 /// The program of the effects, or of an effect that is zero: methods for a potential then need one type only.
@@ -293,11 +263,10 @@ const FEWEST: u32 = 1000;
 /// The scene with the chosen method and the fewest steps, if the number of steps is left open and the choice has fewer.
 fn refined(file: &SceneFile, choice: &Choice) -> Option<(SceneFile, f64)> {
     let is_coarse = file.run.is_left_open && choice.steps < u64::from(FEWEST);
-    let method = Method::of_offer(&choice.chosen().name).filter(|_| is_coarse)?;
     let step = file.run.duration / f64::from(FEWEST);
     let mut refined = file.clone();
-    (refined.run.method, refined.run.pace) = (method, Pace::Step { step, steps: FEWEST });
-    Some((refined, step))
+    (refined.run.method, refined.run.pace) = (choice.chosen().scheme, Pace::Step { step, steps: FEWEST });
+    is_coarse.then_some((refined, step))
 }
 
 /// Runs the steps that an accuracy requires.
@@ -309,9 +278,11 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
     let stepper = stepper.map_err(Stop::Accuracy)?;
     let choice = stepper.choice().clone();
     let mut run = if let Some((file, step)) = refined(file, &choice) {
-        by_steps(&file, step)?.run(&file, FEWEST, listeners)?
+        by(&by_steps(&file, step)?, &file, FEWEST, listeners)?
     } else {
-        make(&*stepper, stepper.start(), course(file, choice.steps), sample, watches(file), listeners)?
+        let any = stepper.any();
+        let state = any.start_at(SO3::from(file.start.attitude), file.start.velocity).map_err(Stop::Start)?;
+        make(any, state, course(file, choice.steps), sample, watches(file), listeners)?
     };
     run.choice = Some(choice);
     Ok(run)

@@ -1,9 +1,9 @@
 //! Samples, steps and event functions for the run of one body.
 
-use liestep::groups::Advected;
-use liestep::motion::{AnyState, AnyStepper, Integrator, Moment};
-use liestep::{SO3, recording};
-use nalgebra::Vector3;
+use liestep::mechanics::Effect;
+use liestep::motion::{AnyMotion, AnyState, AnyStepper, Integrator, Moment, Plan};
+use liestep::{SO3, Stepper, recording};
+use nalgebra::{Matrix3, Vector3};
 
 use crate::file::event::{Direction, Event, Quantity};
 use crate::file::sample::{BodySample, Sample};
@@ -11,11 +11,55 @@ use crate::file::scene::SceneFile;
 use crate::run::make::{Course, EventFunction};
 
 /// The stepper of a scene, and its initial state.
-pub type MemberStart = (AnyStepper<SO3, ()>, AnyState<SO3, ()>);
+pub type MemberStart = (AnyStepper, AnyState);
+
+/// An integrator of a body on SO(3): a typed stepper in lanes, or one whose states are numbers.
+pub trait Rotating: Integrator<Scalar = f64> {
+    /// The attitude, body to space.
+    fn attitude(motion: &Self::Motion) -> SO3;
+
+    /// The angular momentum, body frame, kg m²/s.
+    fn momentum(motion: &Self::Motion) -> Vector3<f64>;
+
+    /// The angular velocity, body frame, rad/s.
+    fn rate(velocity: Self::Velocity) -> Vector3<f64>;
+}
+
+impl Rotating for AnyStepper {
+    fn attitude(motion: &AnyMotion) -> SO3 {
+        SO3::from_matrix_unchecked(Matrix3::from_row_slice(motion.attitude()))
+    }
+
+    fn momentum(motion: &AnyMotion) -> Vector3<f64> {
+        Vector3::from_column_slice(motion.momentum())
+    }
+
+    fn rate(velocity: Vec<f64>) -> Vector3<f64> {
+        Vector3::from_column_slice(&velocity)
+    }
+}
+
+impl<S, P> Rotating for Stepper<S, P>
+where
+    S: Effect<Scalar = f64, Group = SO3>,
+    P: Plan<S>,
+{
+    fn attitude(motion: &Self::Motion) -> SO3 {
+        motion.attitude()
+    }
+
+    fn momentum(motion: &Self::Motion) -> Vector3<f64> {
+        motion.momentum()
+    }
+
+    fn rate(velocity: Vector3<f64>) -> Vector3<f64> {
+        velocity
+    }
+}
 
 /// The sample of one body at this moment.
-pub(crate) fn sample<I: Integrator<Group = SO3>>(now: &Moment<'_, I>) -> Sample {
-    let body = BodySample::turning(now.attitude(), now.velocity(), now.momentum());
+pub(crate) fn sample<I: Rotating>(now: &Moment<'_, I>) -> Sample {
+    let body = BodySample::turning(I::attitude(now), I::rate(now.velocity()), I::momentum(now));
     Sample {
         time: now.time(),
         energy: now.energy(),
@@ -38,9 +82,7 @@ pub(crate) fn course(file: &SceneFile, steps: u64) -> Course<'_> {
 }
 
 /// The events that a run detects.
-pub(crate) fn watches<A: Advected<SO3> + 'static>(
-    file: &SceneFile,
-) -> Vec<(recording::Event, EventFunction<AnyStepper<SO3, A>>)> {
+pub(crate) fn watches(file: &SceneFile) -> Vec<(recording::Event, EventFunction<AnyStepper>)> {
     let axis = file.picture.axis.0;
     let watch = |event: &Event| -> (_, EventFunction<_>) {
         let kind = kind(event.direction);
@@ -55,7 +97,7 @@ pub type MemberEvent<I> = (String, recording::Event, Box<dyn Fn(&Moment<'_, I>) 
 
 impl SceneFile {
     /// The events to be detected for the members of an ensemble.
-    pub fn member_events<I: Integrator<Group = SO3>>(&self) -> impl Iterator<Item = MemberEvent<I>> {
+    pub fn member_events<I: Rotating>(&self) -> impl Iterator<Item = MemberEvent<I>> {
         let axis = self.picture.axis.0;
         let of = move |Event { name, quantity, direction, stops }: &Event| -> MemberEvent<I> {
             (name.clone(), kind(*direction), Box::new(function(*quantity, axis)), *stops)
@@ -74,16 +116,16 @@ fn kind(direction: Direction) -> recording::Event {
 }
 
 /// The function that rises through zero with the quantity through its value. A tilt is that of `axis`, body frame.
-fn function<I: Integrator<Group = SO3>>(
+fn function<I: Rotating>(
     quantity: Quantity,
     axis: Vector3<f64>,
 ) -> impl Fn(&Moment<'_, I>) -> f64 + Send + Sync + 'static {
     move |now| match quantity {
         // The cosine is smooth at the vertical, unlike the angle.
-        Quantity::Tilt(angle) => angle.cos() - (now.attitude().as_matrix() * axis).z,
-        Quantity::Speed(speed) => now.velocity().norm_squared() - speed * speed,
+        Quantity::Tilt(angle) => angle.cos() - (I::attitude(now).as_matrix() * axis).z,
+        Quantity::Speed(speed) => I::rate(now.velocity()).norm_squared() - speed * speed,
         Quantity::Energy(energy) => now.energy() - energy,
-        Quantity::Velocity(component, rate) => now.velocity()[component] - rate,
-        Quantity::Axis(component, part) => (now.attitude().as_matrix() * axis)[component] - part,
+        Quantity::Velocity(component, rate) => I::rate(now.velocity())[component] - rate,
+        Quantity::Axis(component, part) => (I::attitude(now).as_matrix() * axis)[component] - part,
     }
 }

@@ -4,7 +4,6 @@ use std::cell::RefCell;
 use std::fmt;
 
 use liestep::accuracy::{AccuracyError, Choice};
-use liestep::groups::LieGroup;
 use liestep::motion::{Integrator, Moment};
 use liestep::recording::{self, Reason, RecordError, Recorder, RunError, Sink};
 use liestep::{SetupError, StepError};
@@ -130,7 +129,7 @@ pub(crate) struct Course<'a> {
 pub(crate) type EventFunction<I> = Box<dyn Fn(&Moment<'_, I>) -> f64>;
 
 /// Runs the steps, unless an event stops the run, and records as many samples as a picture needs.
-pub(crate) fn make<I: Integrator<Group: LieGroup<Scalar: Into<f64>>>>(
+pub(crate) fn make<I: Integrator<Scalar: Into<f64>>>(
     stepper: &I,
     mut state: I::State,
     course: Course<'_>,
@@ -211,7 +210,7 @@ struct TableRecorder<'a, I: Integrator> {
     numbers: &'a RefCell<Vec<f64>>,
 }
 
-impl<'a, I: Integrator<Group: LieGroup<Scalar: Into<f64>>>> TableRecorder<'a, I> {
+impl<'a, I: Integrator<Scalar: Into<f64>>> TableRecorder<'a, I> {
     fn new(course: Course<'a>, numbers: &'a RefCell<Vec<f64>>, stepper: &I, sink: &'a mut dyn Sink) -> Self {
         let mut recorder = Recorder::bare(stepper, sink);
         for (place, recording::Column { name, unit }) in course.listed.into_iter().enumerate() {

@@ -8,7 +8,6 @@ pub(crate) mod make;
 mod nearest;
 mod scene;
 mod second;
-pub(crate) mod springs;
 mod stiffness;
 mod swings;
 mod system;

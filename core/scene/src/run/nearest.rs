@@ -5,7 +5,7 @@ use liestep::SO3;
 use liestep::groups::R3;
 use nalgebra::{DMatrix, MatrixXx3, SymmetricEigen, Vector3, Vector6};
 
-use crate::file::system::{System, ends_and_axes};
+use crate::file::system::System;
 use crate::run::stiffness::eigen;
 
 /// Attitude and position of a body, and its velocities; the angular velocity is in the body frame.
@@ -23,9 +23,8 @@ impl System {
         let mut gaps = MatrixXx3::zeros(self.joints.len());
         let mut partings = MatrixXx3::zeros(self.joints.len());
         for (row, joint) in self.joints.iter().enumerate() {
-            let (ends, _) = ends_and_axes(&joint.of);
             for (side, sign) in [(0, -1.0), (1, 1.0)] {
-                let (place, velocity) = point(joint.bodies[side].map(|body| bodies[body]), &ends[side]);
+                let (place, velocity) = point(joint.bodies[side].map(|body| bodies[body]), &joint.of.at[side]);
                 for column in 0..3 {
                     gaps[(row, column)] -= sign * place[column];
                     partings[(row, column)] -= sign * velocity[column];

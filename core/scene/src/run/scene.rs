@@ -3,22 +3,21 @@
 use std::error::Error;
 
 use liestep::groups::Advected;
-use liestep::mechanics::{KineticPart, Regular};
-use liestep::motion::{Integrator, Moment};
+use liestep::motion::Moment;
 use liestep::recording::{self, Csv, Sink};
+use liestep::with::Scheme;
 use liestep::{SO3, SetupError, StepError};
 use liestep_late::Slots;
 
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
 use crate::file::event::Event;
-use crate::file::method::Method;
 use crate::file::mistake::Mistake;
 use crate::file::quantity::short;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
 use crate::run::choose::{self, MemberInLanes, Whole};
-use crate::run::course::{MemberStart, sample};
+use crate::run::course::{MemberStart, Rotating, sample};
 use crate::run::make::{Listeners, Run, Stop, fast_turn};
 
 impl SceneFile {
@@ -63,7 +62,7 @@ impl SceneFile {
 
     /// A note about a body that turns too far in a step of (3.13).
     fn fast_turn(&self) -> Option<String> {
-        let is_own_step = matches!(self.run.method, Method::Step) && !self.has_steps_of_its_own();
+        let is_own_step = matches!(self.run.method, Scheme::Step) && !self.has_steps_of_its_own();
         let by_steps = self.body.is_some() && is_own_step && self.kinetic() == Kinetic::Rigid;
         fast_turn(self.turn_of_a_step().filter(|_| by_steps)?)
     }
@@ -93,10 +92,10 @@ impl SceneFile {
     }
 
     /// The scene as one program, for members of its ensemble in lanes. `None` for another method, for varying steps,
-    /// for effects along orbits, and for terms that need another `K` or `W`: try [`LeastWhole`](crate::LeastWhole)
+    /// for effects along orbits, and for terms that need another `W`: try [`LeastWhole`](crate::LeastWhole)
     /// first.
     #[must_use]
-    pub fn whole<K: KineticPart, W: Advected<SO3> + Slots>(&self) -> Option<Whole<K, W>> {
+    pub fn whole<W: Advected<SO3> + Slots>(&self) -> Option<Whole<W>> {
         choose::whole(self)
     }
 
@@ -106,19 +105,13 @@ impl SceneFile {
     /// # Errors
     ///
     /// The errors of [`stepper`](Self::stepper).
-    pub fn in_lanes<K: KineticPart, W: Advected<SO3> + Slots>(
-        &self,
-        whole: &Whole<K, W>,
-    ) -> Result<MemberInLanes<K, W>, Mistake>
-    where
-        Whole<K, W>: Regular<Scalar = f64, Group = SO3>,
-    {
+    pub fn in_lanes<W: Advected<SO3> + Slots>(&self, whole: &Whole<W>) -> Result<MemberInLanes<W>, Mistake> {
         choose::member(self, whole).map_err(|stop| self.mistake(stop))
     }
 
     /// The numbers of these columns at a moment, one after the other. The sign of a quaternion is arbitrary.
     #[must_use]
-    pub fn numbers<I: Integrator<Group = SO3>>(columns: &[Column], now: &Moment<'_, I>) -> Vec<f64> {
+    pub fn numbers<I: Rotating>(columns: &[Column], now: &Moment<'_, I>) -> Vec<f64> {
         let now = sample(now);
         Column::row(columns, &now, &now)
     }
@@ -215,7 +208,7 @@ impl SceneFile {
             format!(", momentum {before} → {after} kg m²/s{events}")
         });
         let choice = run.choice.as_ref().map(|choice| {
-            let (error, accuracy, method) = (choice.error, choice.accuracy.tolerance, &choice.chosen().name);
+            let (error, accuracy, method) = (choice.error, choice.accuracy.tolerance, choice.chosen().scheme);
             if self.run.is_left_open {
                 format!("  the end is off by at most about {error:.0e}, by a method for {accuracy:e}: {method}\n")
             } else {

@@ -1,8 +1,8 @@
 //! Error of a run's end, estimated by a second run with other steps (Richardson).
 
+use liestep::with::Scheme;
 use nalgebra::Vector3;
 
-use crate::file::method::Method;
 use crate::file::quantity::round;
 use crate::file::sample::Sample;
 use crate::file::scene::SceneFile;
@@ -106,11 +106,8 @@ impl SceneFile {
             return String::new();
         }
         let order = match self.run.method {
-            Method::Step => self.order(),
-            Method::Composition(scheme) => scheme.0.order(),
-            Method::Splitting(scheme) => scheme.0.order(),
-            Method::Processed(scheme) => scheme.0.order(),
-            Method::Collocation(stages) => stages.order(),
+            Scheme::Step => self.order(),
+            scheme => scheme.order(),
         };
         let again = |steps, step| {
             let mut second = self.clone();

@@ -6,7 +6,7 @@ use liestep::mechanics::Inertia;
 use nalgebra::{DMatrix, Dyn, Matrix3, Matrix3xX, SymmetricEigen, Vector3};
 
 use crate::file::quantity::{round, short};
-use crate::file::system::{System, ends_and_axes};
+use crate::file::system::{Between, Joint, Spring, System};
 use crate::run::make::Stop;
 
 /// Least distance of a spring's ends, relative to its length at rest. Below it, rounding errors determine the
@@ -78,6 +78,17 @@ fn largest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().max_by(|(_, a), (_, b)| a.total_cmp(b))
 }
 
+impl Between<Spring> {
+    /// The vector from the first point to the second, in space, for bodies at these places.
+    fn along(&self, places: &[(SO3, R3)]) -> Vector3<f64> {
+        let [one, other] = [0, 1].map(|side| {
+            let point = self.of.at[side];
+            self.bodies[side].map_or(point, |body| places[body].0.as_matrix() * point + places[body].1.translation())
+        });
+        other - one
+    }
+}
+
 impl System {
     /// A note about a step that is long for the springs at these places, if it is.
     ///
@@ -85,8 +96,11 @@ impl System {
     ///
     /// The step is unstable, or a spring has no direction.
     pub(crate) fn check_springs(&self, places: &[(SO3, R3)]) -> Result<Option<OfSpring>, Stop> {
+        if self.springs.is_empty() {
+            return Ok(None);
+        }
         for (number, spring) in self.springs.iter().enumerate() {
-            if spring.of.length != 0.0 && has_no_direction(spring.along_of(places).norm(), spring.of.length) {
+            if spring.of.length != 0.0 && has_no_direction(spring.along(places).norm(), spring.of.length) {
                 return Err(Stop::Spring(number, NO_DIRECTION.to_owned()));
             }
         }
@@ -105,7 +119,7 @@ impl System {
     fn fastest(&self, places: &[(SO3, R3)], free: Option<&DMatrix<f64>>, in_any: bool) -> Option<(usize, f64)> {
         let mut all = DMatrix::zeros(3 * self.springs.len(), 6 * self.bodies.len());
         for (number, spring) in self.springs.iter().enumerate() {
-            let along = spring.along_of(places);
+            let along = spring.along(places);
             let direction = along / along.norm();
             let is_along = !in_any && direction.iter().all(|part| part.is_finite());
             // The stiffness is `k` along the spring, and `k (1 − l/|y|)` across it.
@@ -143,7 +157,7 @@ impl System {
     fn free_motions(&self, places: &[(SO3, R3)]) -> Option<DMatrix<f64>> {
         let mut held: Vec<Matrix3xX<f64>> = Vec::new();
         for joint in &self.joints {
-            let (ends, axes) = ends_and_axes(&joint.of);
+            let Joint { at: ends, axes } = joint.of;
             let apart = |of: &dyn Fn(usize) -> Matrix3xX<f64>| of(1) - of(0);
             held.push(apart(&|side| self.moved(places, joint.bodies[side], &ends[side])));
             // Axes turn with their bodies, and shifts don't change them.

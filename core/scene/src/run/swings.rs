@@ -1,9 +1,9 @@
 //! The stability limit of one body's potentials: their kicks are unstable beyond `hω = 2` of its fastest swing.
 
 use liestep::mechanics::Inertia;
+use liestep::with::Scheme;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::file::method::Method;
 use crate::file::orbit::{OnOrbit, Turning};
 use crate::file::quantity::{round, short};
 use crate::file::scene::SceneFile;
@@ -47,7 +47,7 @@ impl SceneFile {
 
     /// The step of a scene whose potentials are kicks at its ends, s.
     fn kicked_by(&self) -> Option<f64> {
-        let is_own_step = matches!(self.run.method, Method::Step) && !self.has_steps_of_its_own();
+        let is_own_step = matches!(self.run.method, Scheme::Step) && !self.has_steps_of_its_own();
         match self.run.pace {
             Pace::Step { step, .. } if is_own_step => Some(step),
             _ => None,

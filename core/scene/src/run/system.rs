@@ -1,63 +1,36 @@
 //! The run of a system of several bodies.
 
-use liestep::motion::Moment;
+use liestep::methods::MultibodyStepper;
+use liestep::motion::{AnyStepper, Moment};
 use liestep::recording::Sink;
 use liestep::{SO3, SetupError, StepError};
-use nalgebra::{Vector3, Vector6};
+use nalgebra::Vector3;
 
-use crate::file::arrangement::{BODIES, LOOPS};
 use crate::file::body::Kinetic;
 use crate::file::mistake::Mistake;
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::system::{System, SystemBody};
-use crate::run::bodies::SystemStepper;
 use crate::run::make::{Course, Listeners, Note, Run, Stop, fast_turn, make, told};
-
-/// The sizes of compiled systems, the smallest first. Only the largest has room for loops, as each size is code of its
-/// own.
-const SIZES: [Size; 4] = [Size::of::<2, 0>(), Size::of::<4, 0>(), Size::of::<BODIES, 0>(), Size::of::<BODIES, LOOPS>()];
-
-/// The size of a system: it has room for this many bodies and loops.
-#[derive(Clone, Copy)]
-struct Size {
-    bodies: usize,
-    loops: usize,
-    simulate: Simulate,
-}
-
-/// A function that simulates a number of steps.
-type Simulate = fn(&System, u64, Listeners<'_>) -> Result<Run, Stop>;
-
-impl Size {
-    const fn of<const N: usize, const L: usize>() -> Self {
-        Self { bodies: N, loops: L, simulate: System::simulate_in::<N, L> }
-    }
-}
 
 /// The quantity that violates a constraint, for messages.
 const GAP: &str = "lengths in m and cosines of axes together";
 
-/// The sample of the first bodies; the others are padding.
-fn sample<const N: usize, const L: usize>(
-    stepper: &SystemStepper<N, L>,
-    bodies: usize,
-    now: &Moment<'_, SystemStepper<N, L>>,
-) -> Sample {
-    let (attitudes, momenta, velocities) = (now.attitude(), now.momentum(), now.velocity());
-    let three = |of: &Vector6<f64>, first: usize| of.fixed_rows::<3>(first).into_owned();
+/// The sample of the bodies at this moment.
+fn sample(stepper: &MultibodyStepper, now: &Moment<'_, AnyStepper>) -> Sample {
+    let (momenta, velocities) = (now.momentum(), now.velocity());
     let (mut momentum, mut angular_momentum) = (Vector3::zeros(), Vector3::zeros());
-    let body = |place: usize| {
-        let (attitude, position) = (attitudes[place].0, attitudes[place].1.translation());
-        let (turning, linear) = (three(&momenta.0[place], 0), three(&momenta.0[place], 3));
+    let body = |body: usize| {
+        let (attitude, place) = stepper.attitude(now.numbers(), body);
+        let three = |of: &[f64], first: usize| Vector3::from_column_slice(&of[6 * body + first..][..3]);
+        let (position, turning, linear) = (place.translation(), three(momenta, 0), three(momenta, 3));
         momentum += linear;
         angular_momentum += attitude.as_matrix() * turning + position.cross(&linear);
-        let velocity = &velocities.0[place];
-        let body = BodySample::turning(attitude, three(velocity, 0), turning);
-        BodySample { position, moving: three(velocity, 3), ..body }
+        let body = BodySample::turning(attitude, three(&velocities, 0), turning);
+        BodySample { position, moving: three(&velocities, 3), ..body }
     };
-    let bodies = (0..bodies).map(body).collect();
-    let (energy, gap) = (now.energy(), stepper.widest_gap(now));
+    let bodies = (0..stepper.bodies()).map(body).collect();
+    let (energy, gap) = (now.energy(), stepper.widest_gap(now.numbers()));
     Sample { time: now.time(), bodies, energy, momentum, angular_momentum, gap }
 }
 
@@ -96,24 +69,15 @@ impl System {
     }
 
     pub(crate) fn simulate(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Stop> {
-        (self.size().simulate)(self, steps, listeners)
-    }
-
-    /// The smallest size with room for the bodies and the loops.
-    fn size(&self) -> Size {
-        let [.., largest] = SIZES;
-        let fits = |size: &Size| size.bodies >= self.bodies.len() && size.loops >= self.arrangement.loops.len();
-        SIZES.into_iter().find(fits).unwrap_or(largest)
-    }
-
-    fn simulate_in<const N: usize, const L: usize>(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Stop> {
-        let stepper = self.stepper::<N, L>().map_err(Stop::Setup)?;
+        let stepper = self.stepper().map_err(Stop::Setup)?;
         let state = self.start(&stepper).map_err(Stop::Start)?;
-        let of_springs = self.check_springs(&state.attitude()[..self.bodies.len()])?;
+        let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
+        let of_springs = self.check_springs(&places)?;
+        let any = AnyStepper::new(stepper.clone());
+        let state = any.state_of(&state).ok_or_else(|| Stop::Other("a state of another system".to_owned()))?;
         let (stride, columns) = (self.output.stride(steps), self.columns.as_slice());
         let course = Course { steps, end: f64::INFINITY, stride, columns, listed: self.columns() };
-        let sample = |now: &Moment<'_, _>| sample(&stepper, self.bodies.len(), now);
-        let mut run = make(&stepper, state, course, sample, Vec::new(), listeners)?;
+        let mut run = make(&any, state, course, |now| sample(&stepper, now), Vec::new(), listeners)?;
         let of_springs = of_springs.map(|(spring, why)| (self.places.springs[spring], why));
         let notes = of_springs.into_iter().chain(self.fast_turns());
         run.notes = notes.map(|(place, why)| Mistake::of_run(&self.path, place, why)).collect();
@@ -162,11 +126,9 @@ impl System {
         ends + &self.changes(run)
     }
 
-    /// The place in the file of the joint with this number in the library.
+    /// The place in the file of the joint with this number.
     fn of_joint(&self, joint: usize) -> (usize, usize) {
-        let of_loop = || self.arrangement.loops.get(joint.checked_sub(self.size().bodies)?);
-        let number = self.arrangement.tree.get(joint).or_else(of_loop);
-        number.map_or(self.places.pace, |&joint| self.places.joints[joint])
+        self.places.joints.get(joint).copied().unwrap_or(self.places.pace)
     }
 
     /// The mistake for a failed run, with its place in the file.

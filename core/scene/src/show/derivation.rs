@@ -4,14 +4,12 @@ use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody,
 use liestep::mechanics::Effect;
 use liestep_late::{Declaration, LateError};
 
-use crate::file::arrangement::BODIES;
 use crate::file::body::{Distribution, Kinetic};
 use crate::file::effects::EFFECTS;
 use crate::file::lagrangian::Declared;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
-use crate::run::bodies::Heavy;
-use crate::run::springs::Springs;
+use crate::run::bodies::{Coil, Cord, Heavy};
 
 /// A term's derivation, and the text of its declaration.
 type Derivation = (&'static str, &'static str);
@@ -92,7 +90,7 @@ impl SceneFile {
     ///
     /// # Errors
     ///
-    /// The sum can't be written in this form, see [`LateError::C`].
+    /// The sum can't be written in this form, see [`LateError::Step`].
     pub fn written(&self, form: Form) -> Result<String, LateError> {
         let listed = self.terms().filter_map(|name| declaration(&name)).map(Declaration::parse);
         let own = self.own().map(|one| Ok(one.declaration));
@@ -127,9 +125,11 @@ impl System {
     #[must_use]
     pub fn derivation(&self) -> String {
         let gravity = if self.gravity.is_some() { "" } else { "without gravity, g = 0\n" };
-        let springs = if self.springs.is_empty() { "" } else { Springs::<BODIES>::DERIVATION };
+        let has = |is_long: bool| self.springs.iter().any(|spring| (spring.of.length != 0.0) == is_long);
+        let springs = if has(true) { Coil::DERIVATION } else { "" };
+        let cords = if has(false) { Cord::DERIVATION } else { "" };
         let joints = if self.joints.is_empty() { "" } else { BALLS };
         let pins = if self.has_pins() { PINS } else { "" };
-        format!("{}{gravity}{springs}{joints}{pins}", Heavy::DERIVATION)
+        format!("{}{gravity}{springs}{cords}{joints}{pins}", Heavy::DERIVATION)
     }
 }

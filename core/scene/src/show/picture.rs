@@ -6,7 +6,6 @@ use liestep_plot::{
 };
 use nalgebra::Vector3;
 
-use crate::file::arrangement::BODIES;
 use crate::file::picture::{Curve, Plane, SpherePicture, Trace};
 use crate::file::sample::Sample;
 use crate::file::scene::SceneFile;
@@ -15,8 +14,8 @@ use crate::run::make::Run;
 
 /// Colours of a vector's components.
 const COLOURS: [Colour; 3] = [BLUE, ORANGE, GREEN];
-/// Colours of bodies.
-const BODY_COLOURS: [Colour; BODIES] = [BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILION, INK, YELLOW];
+/// Colours of bodies, which further bodies repeat.
+const BODY_COLOURS: [Colour; 8] = [BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILION, INK, YELLOW];
 
 impl SceneFile {
     /// The picture of a run as SVG.
@@ -50,7 +49,7 @@ impl System {
             Plane::Xz => (["x, m", "z, m"], [0, 2]),
             Plane::Yz => (["y, m", "z, m"], [1, 2]),
         };
-        let names: Vec<_> = self.names().zip(BODY_COLOURS).collect();
+        let names: Vec<_> = self.names().zip(BODY_COLOURS.into_iter().cycle()).collect();
         let of_bodies = |point: &dyn Fn(&Sample, usize) -> (f64, f64)| -> Vec<Line> {
             let points = |body| samples.iter().map(|sample| point(sample, body)).collect();
             let bodies = names.iter().enumerate();

@@ -4,7 +4,6 @@
 //! of a Newton solve is such a coordinate vector, and `F` is rebuilt from it in every step: composing small
 //! corrections onto the previous `F` would let its rounding errors pile up.
 
-mod free_body;
 mod matrix_group;
 
 use nalgebra::{Matrix3, RealField, Vector3};
@@ -41,21 +40,6 @@ pub trait Retraction<G: LieGroup> {
     #[must_use]
     fn tangent_of_half(half: &G::Vector) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square {
         Self::tangent(&(*half + *half)) * real::<G::Scalar>(2.0)
-    }
-
-    /// The Jacobian `h ∂p/∂ξ` of the momentum `p` that takes a free motion with the kinetic energy `½ η·Jη` to `τ(ξ)`
-    /// within `h`.
-    ///
-    /// An approximation suffices: a solver uses it as the Jacobian of a momentum equation if the exact one is
-    /// expensive, see [`Effect::JACOBIAN_IS_EXPENSIVE`](crate::mechanics::Effect::JACOBIAN_IS_EXPENSIVE), and corrects
-    /// it during the iteration. The default is its value at the identity, `J`.
-    #[must_use]
-    #[inline]
-    fn free_momentum_tangent(
-        inertia: &<G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square,
-        _xi: &G::Vector,
-    ) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square {
-        *inertia
     }
 
     /// Whether `times ξ` is so near to the identity that a solution there is on the branch of the identity.
@@ -127,11 +111,6 @@ impl<T: Real> Retraction<SO3<T>> for CayleyRetraction {
         let four = real::<T>(4.0);
         let scale = four / (four + xi.norm_squared());
         (Matrix3::identity() + SO3::hat(xi) * real::<T>(0.5)) * scale
-    }
-
-    /// The Jacobian to the relative order of `|ξ|⁴`.
-    fn free_momentum_tangent(inertia: &Matrix3<T>, xi: &Vector3<T>) -> Matrix3<T> {
-        free_body::momentum_tangent(inertia, xi)
     }
 
     fn is_near(xi: &Vector3<T>, times: f64) -> Mask<T> {

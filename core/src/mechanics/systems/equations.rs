@@ -7,8 +7,7 @@ use super::places::{At, Places};
 use super::{Placement, TermConstants, term_at};
 use crate::groups::Retraction;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Residual, Square, Vector, pattern};
-use crate::mechanics::kinetic_part::KineticPart;
+use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Square, Vector, pattern};
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
 use crate::numbers::{Blocks, Coordinates as _, real};
@@ -61,7 +60,7 @@ where
     E::Retraction: Retraction<P::Group>,
 {
     type Retraction = E::Retraction;
-    type Kinetic = <E::Kinetic as KineticPart>::ByNewton;
+    type Kinetic = E::Kinetic;
     type Constants = TermConstants<E, M>;
     type StepTerms = P::Of<E::StepTerms>;
 
@@ -210,23 +209,18 @@ where
         P::newton_update(pattern::<Self>(constants), Self::systems(constants, terms, half))
     }
 
-    fn newton_residual(
-        constants: &Self::Constants,
-        terms: &Self::StepTerms,
-        half: &Vector<Self>,
-    ) -> Residual<Vector<Self>> {
+    fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
         let most = Self::denominators(constants);
-        let momentum_defect = P::sum(
+        P::sum(
             #[cfg_attr(not(debug_assertions), inline(always))]
             |at| {
                 let (constants, _) = &constants[term_at::<M>(at.place)];
                 let half = P::components(half, at);
-                let residual = E::newton_residual(constants, &terms.as_ref()[at.place], &half).momentum_defect;
+                let residual = E::newton_residual(constants, &terms.as_ref()[at.place], &half);
                 let zero = Vector::<E>::zero();
                 Vector::<E>::raised(&residual, &zero.outer(&zero), most - E::denominators(constants), &half).0
             },
-        );
-        Residual { momentum_defect, moving_kick: None }
+        )
     }
 
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &P::Advected) -> Vector<Self> {

@@ -307,7 +307,7 @@ where
     }
 
     fn keep(&self, _: &S, motion: &Motion<[SO3; N], S::Advected>) -> Self::Kept {
-        WarmStart::of(self.velocities(motion) * (0.5 * self.h), false)
+        WarmStart::of(self.velocities(motion) * (0.5 * self.h))
     }
 
     #[hot]

@@ -110,7 +110,19 @@ impl<S: Effect> Stepper<S> {
         const {
             assert!(S::SELF_ADJOINT, "a composition needs a Lagrangian with l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)");
         }
-        if !scene.is_self_adjoint() {
+        Self::composed_if_symmetric(scene, h, scheme)
+    }
+
+    /// [`composed`](Self::composed) of a scene whose type doesn't say that it is self-adjoint.
+    pub(crate) fn composed_if_symmetric(
+        scene: S,
+        h: Scalar<S>,
+        scheme: CompositionScheme,
+    ) -> Result<Stepper<S, Composition<S>>, SetupError>
+    where
+        S: DiscreteLagrangian + Regular,
+    {
+        if !(S::SELF_ADJOINT && scene.is_self_adjoint()) {
             return Err(SetupError::NotSelfAdjoint);
         }
         let plan = Composition::new(&scene, h, scheme)?;

@@ -1,5 +1,7 @@
 //! Gauss collocation on the cotangent bundle of all matrices, for continuous Lagrangians of one body on any matrix group.
 
+use alloc::vec::Vec;
+
 use nalgebra::{SMatrix, SVector};
 
 use super::coefficients::Coefficients;
@@ -7,7 +9,7 @@ use super::settling::{Changes, MOST_ITERATIONS, Next};
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{ContinuousLagrangian, Legendre, Matrix, Term, Vector, check_inertia, check_velocity};
-use crate::motion::{ElapsedTime, Integrator, Motion, State, StepReport};
+use crate::motion::{ElapsedTime, Factor, Integrator, Motion, State, StepReport, write_row};
 use crate::numbers::{Coordinates, carried_sum};
 
 roots!();
@@ -312,8 +314,10 @@ where
     L: ContinuousLagrangian<Scalar = f64>,
     L::Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>, Matrix = SMatrix<f64, N, N>>,
 {
-    type Group = L::Group;
-    type Advected = L::Advected;
+    type Scalar = f64;
+    type Motion = Motion<L::Group, L::Advected>;
+    type Velocity = SVector<f64, D>;
+    type Inertia = ();
     type State = State<L::Group, L::Advected, CotangentCarry<N, D>>;
 
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
@@ -345,6 +349,21 @@ where
             kept: CotangentCarry::nothing(),
             elapsed: ElapsedTime::nothing(),
         }
+    }
+
+    fn steps(motion: &Self::Motion) -> u64 {
+        motion.steps
+    }
+
+    fn factors(&self) -> Vec<Factor> {
+        L::Group::factors()
+    }
+
+    fn inertia(&self) {}
+
+    fn write(&self, motion: &Self::Motion, (): &(), attitude: &mut [f64], row: &mut [f64]) {
+        let read = (Integrator::velocity(self, motion), Integrator::energy(self, motion));
+        write_row(motion, read, attitude, row);
     }
 
     fn step_size(&self) -> f64 {

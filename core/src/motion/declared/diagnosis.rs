@@ -107,8 +107,7 @@ impl<S: Effect> OwnStep<S> {
                 Some(Solvability::Open) | None => {}
             }
             let a = kicked::<S>(&constants, momentum, advected);
-            let problem =
-                Problem { scene, constants: &constants, a, w: advected, h, trusted: self.trusted, safe: self.safe };
+            let problem = Problem { scene, constants: &constants, a, w: advected, h, safe: self.safe };
             problem.attempt(&Vector::<S>::zero()).is_ok()
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.h * real(fraction))

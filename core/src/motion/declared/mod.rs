@@ -7,15 +7,14 @@ pub(crate) use diagnosis::beyond_solvable;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
-    Effect, Group, KineticPart, Matrix, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity,
-    pattern,
+    Effect, Group, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, pattern,
 };
 use crate::motion::increment::Increment;
 use crate::motion::plan::{Cost, Plan, Steerable, Variable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, MotionOf, Summation, SumsOf, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
-use crate::solving::{Kick, Problem, Root, WarmStart, newton_system, safe, step_terms, trusted_radius};
+use crate::solving::{Problem, Root, WarmStart, newton_system, safe, step_terms};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The step of the scene itself, by its momentum equation (2.7): the plan of [`Stepper::new`](crate::Stepper::new).
@@ -25,13 +24,11 @@ pub struct OwnStep<S: Effect> {
     constants: S::Constants,
     /// The square of a right-hand side far beyond those of steps that have a solution.
     largest_target: Scalar<S>,
-    trusted: Scalar<S>,
     /// The determinant of the Jacobian above which a solve needs no second Jacobian.
     safe: Scalar<S>,
 }
 
-/// The memory of a step: as much history as its solve uses.
-type Memory<S> = WarmStart<Vector<S>, <<S as Effect>::Kinetic as KineticPart>::History<Scalar<S>, Vector<S>>>;
+type Memory<S> = WarmStart<Vector<S>>;
 
 impl<S: Effect> OwnStep<S> {
     /// Checks the parameters and folds the constants for the step `h`.
@@ -77,9 +74,7 @@ impl<S: Effect> OwnStep<S> {
         // A step of zero is left to the careful solve, as there is no equation.
         let largest = trace / h * real(2.0 * RATIO) / Scalar::<S>::simd_default_epsilon();
         let largest_target = if h == real(0.0) { h } else { largest * largest };
-        let is_expensive = const { S::JACOBIAN_IS_EXPENSIVE } && S::jacobian_is_expensive(&constants) && h != real(0.0);
-        let trusted = if is_expensive { trusted_radius(scene, &constants) } else { real(0.0) };
-        Ok(Self { h, constants, largest_target, trusted, safe })
+        Ok(Self { h, constants, largest_target, safe })
     }
 
     /// The solution `F` of the momentum equation (2.7) from the coordinates `guess`, without another start.
@@ -147,7 +142,7 @@ impl<S: Effect> OwnStep<S> {
     /// The increment for the solution `F`, with `a = μ + kick_before(w)`.
     #[hot]
     fn moved<M: SumsOf<S>>(&self, motion: &M, a: &Vector<S>, root: &Root<Group<S>>) -> Increment<S> {
-        let Root { half, increment, iterations, far, ref kick } = *root;
+        let Root { half, increment, iterations, far } = *root;
         let Motion { momentum, advected, .. } = motion.now();
         // The order of these operations matters: another one changes the times of some scenes by two hundredths, up or
         // down.
@@ -161,7 +156,7 @@ impl<S: Effect> OwnStep<S> {
                 kicks = Some(S::kick_before(&self.constants, advected));
             }
             if const { S::PARTS.kick_after } && S::parts(&self.constants).kick_after {
-                let after = self.kick_after(&increment, &next, kick);
+                let after = S::kick_after(&self.constants, &increment, &next);
                 kicks = Some(kicks.map_or(after, |before| before + after));
             }
             change = kicks.map_or(change, |kicks| change + kicks);
@@ -170,25 +165,11 @@ impl<S: Effect> OwnStep<S> {
                 change = change + (*a - *momentum);
             }
             if const { S::PARTS.kick_after } && S::parts(&self.constants).kick_after {
-                change = change + self.kick_after(&increment, &next, kick);
+                change = change + S::kick_after(&self.constants, &increment, &next);
             }
         }
         let momentum = *momentum + change;
         Increment { coordinates: half + half, increment, momentum, advected: next, iterations, change, half, far }
-    }
-
-    /// `kick_after(F, w⁺)`; lanes whose solve has computed it reuse the result.
-    #[hot]
-    fn kick_after(&self, increment: &Matrix<S>, next: &S::Advected, kick: &Kick<Group<S>>) -> Vector<S> {
-        let direct = || S::kick_after(&self.constants, increment, next);
-        if const { !S::JACOBIAN_IS_EXPENSIVE } || !kick.found.any() {
-            return direct();
-        }
-        let mut found = kick.value + Group::<S>::adjoint_transpose_increment(increment, &kick.value);
-        if let Some(beside) = S::kick_beside(&self.constants, increment, next) {
-            found = found + beside;
-        }
-        if kick.found.all() { found } else { found.select(kick.found, direct()) }
     }
 
     #[hot]
@@ -199,7 +180,6 @@ impl<S: Effect> OwnStep<S> {
             a: kicked::<S>(&self.constants, momentum, w),
             w,
             h: self.h,
-            trusted: self.trusted,
             safe: if scene.has_constant_inertia() {
                 self.safe
             } else {
@@ -210,7 +190,7 @@ impl<S: Effect> OwnStep<S> {
 
     #[cold]
     fn stand_still(momentum: &Vector<S>, advected: &S::Advected) -> Increment<S> {
-        let Root { half, increment, iterations, far, .. } = Root::at::<S::Retraction>(&Vector::<S>::zero(), 0);
+        let Root { half, increment, iterations, far } = Root::at::<S::Retraction>(&Vector::<S>::zero(), 0);
         let (momentum, advected, change) = (*momentum, *advected, Vector::<S>::zero());
         Increment { coordinates: half, increment, momentum, advected, iterations, change, half, far }
     }
@@ -233,8 +213,7 @@ impl<S: Effect> Plan<S> for OwnStep<S> {
     }
 
     fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
-        let has_pace = scene.with_energy(&motion.advected, real(0.0)).is_some();
-        WarmStart::of(half_coordinates(scene, motion, self.h), has_pace || S::jacobian_is_expensive(&self.constants))
+        WarmStart::of(half_coordinates(scene, motion, self.h))
     }
 
     #[hot]

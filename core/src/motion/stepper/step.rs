@@ -1,14 +1,17 @@
 //! Steps and runs of a stepper.
 
+use alloc::vec::Vec;
+
 use super::{StateOf, Stepper};
 use crate::error::StepError;
-use crate::groups::Advected as _;
+use crate::groups::layout::Factor;
+use crate::groups::{Advected as _, LieGroup as _};
 use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector, factored_inertia, velocity_and_energy};
-use crate::motion::integrator::{Integrator, run_or_step, seeing};
+use crate::motion::integrator::{Integrator, run_or_step, write_row};
 use crate::motion::plan::{Cost, Next, NextSteps, Plan, Steerable, Variable, run_plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
-use crate::motion::summation::{Motion, MotionOf};
+use crate::motion::summation::MotionOf;
 use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, real};
 
 /// # Step
@@ -230,8 +233,10 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 }
 
 impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
-    type Group = Group<S>;
-    type Advected = S::Advected;
+    type Scalar = Scalar<S>;
+    type Motion = MotionOf<S>;
+    type Velocity = Vector<S>;
+    type Inertia = Option<FactoredInertia<Group<S>>>;
     type State = StateOf<S, P>;
 
     /// All wrappers of steps use one compiled copy of a step, that of a run if it is the same.
@@ -292,8 +297,8 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         Stepper::adopt(self, motion)
     }
 
-    fn seen(&self, motion: &Motion<Group<S>, ()>) -> MotionOf<S> {
-        seeing(motion, self.plan.advected(&self.scene, motion.steps).seen_from(&motion.attitude))
+    fn steps(motion: &MotionOf<S>) -> u64 {
+        motion.steps
     }
 
     fn step_size(&self) -> Scalar<S> {
@@ -308,20 +313,24 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         Stepper::energy(self, motion)
     }
 
-    fn factored_inertia(&self) -> Option<FactoredInertia<Group<S>>> {
+    fn factors(&self) -> Vec<Factor> {
+        Group::<S>::factors()
+    }
+
+    fn inertia(&self) -> Self::Inertia {
         if const { P::HAS_OWN_INERTIA } { None } else { factored_inertia(&self.scene) }
     }
 
-    #[hot]
-    fn velocity_and_energy(
-        &self,
-        motion: &MotionOf<S>,
-        inertia: Option<&FactoredInertia<Group<S>>>,
-    ) -> (Vector<S>, Scalar<S>) {
-        if const { P::HAS_OWN_INERTIA } {
-            return (self.velocity(motion), self.energy(motion));
-        }
-        velocity_and_energy(&self.scene, inertia, &motion.momentum, &motion.advected)
+    fn write(&self, motion: &MotionOf<S>, inertia: &Self::Inertia, attitude: &mut [Scalar<S>], row: &mut [f64])
+    where
+        Scalar<S>: Into<f64>,
+    {
+        let read = if const { P::HAS_OWN_INERTIA } {
+            (self.velocity(motion), self.energy(motion))
+        } else {
+            velocity_and_energy(&self.scene, inertia.as_ref(), &motion.momentum, &motion.advected)
+        };
+        write_row(motion, read, attitude, row);
     }
 }
 

@@ -215,14 +215,8 @@ pub(super) fn costs(kernel: &Kernel) -> String {
     // The sum a = μ + k₀ takes an addition for each component.
     let mut before_the_solve = count(&kernel.graph, &before, Some(Stage::Step));
     before_the_solve.arithmetic += kernel.residual.len();
-    let alone = if kernel.jacobian_is_expensive() {
-        let gradient = count(&kernel.graph, &kernel.gradient(), Some(Stage::Iteration));
-        format!("; residual and diamond without it, with which a solve begins: {gradient}")
-    } else {
-        String::new()
-    };
     format!(
-        "construction: {}\n    step, before the solve: {}\n    Newton iteration: {}{alone}\n    step, after the solve: {}",
+        "construction: {}\n    step, before the solve: {}\n    Newton iteration: {}\n    step, after the solve: {}",
         count(&kernel.graph, &[before.as_slice(), &kernel.kick_after].concat(), Some(Stage::Construction)),
         before_the_solve,
         count(&kernel.graph, &before, Some(Stage::Iteration)),

@@ -104,7 +104,7 @@ pub(crate) fn implementation(
     let describe = emitter.describe();
     let private = &header.private;
     let span = Span::mixed_site();
-    let types = header.types(kinetic(declaration, chosen), &stages.constants_type, &stages.step_terms_type);
+    let types = header.types(kinetic(chosen), &stages.constants_type, &stages.step_terms_type);
     let parts = stages::parts(&emitter, kernel);
     let is_force = declaration.role == Role::Force;
     let (name, mathematics) =
@@ -154,14 +154,9 @@ pub(crate) fn implementation(
     quote_spanned!(span=> #item #implementations)
 }
 
-/// The kinetic part of an effect: its presence, and the cost of its solve.
-fn kinetic(declaration: &Declaration, chosen: &Choice) -> &'static str {
-    match (chosen.derived.limit.has_kinetic, chosen.kernel.jacobian_is_expensive()) {
-        (false, _) => "WithoutKinetic",
-        (true, false) if declaration.energy.is_some() => "WithPace",
-        (true, false) => "WithKinetic",
-        (true, true) => "WithExpensiveKinetic",
-    }
+/// The type of an effect's kinetic part.
+fn kinetic(chosen: &Choice) -> &'static str {
+    if chosen.derived.limit.has_kinetic { "WithKinetic" } else { "WithoutKinetic" }
 }
 
 /// The declaration and everything derived from it, as text.

@@ -93,7 +93,7 @@ pub(super) fn stages(emitter: &Emitter, stages: &program::Stages, equations: &[s
     Stages { methods, constants_type: length(constants), step_terms_type: length(step_terms) }
 }
 
-/// The Newton system, and the residual alone if that is worthwhile; `given` has the values of the stages before.
+/// The Newton system; `given` has the values of the stages before.
 fn newton_system(
     emitter: &Emitter,
     kernel: &Kernel,
@@ -105,7 +105,6 @@ fn newton_system(
     let (lets, values) = emitter.statements(graph, system, given);
     let (residual, jacobian) = values.split_at(kernel.residual.len());
     let (residual, jacobian) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Square, jacobian));
-    let residual_alone = kernel.jacobian_is_expensive().then(|| residual_alone(emitter, kernel, given));
     let (increment, jacobian) = in_coordinates(emitter, kernel, system, jacobian);
     let iteration = super::docs::stage(graph, system, Stage::Iteration, "a Newton iteration, residual and Jacobian");
     let iteration = format!("```text\n{}\n```\n\n{iteration}", super::docs::candidates(kernel));
@@ -121,8 +120,6 @@ fn newton_system(
             #lets
             (#residual, #jacobian)
         }
-
-        #residual_alone
     }
 }
 
@@ -227,29 +224,6 @@ fn kick_derivative(emitter: &Emitter, documentation: &str, value: &TokenStream) 
             velocity: &#vector,
         ) -> #option<#vector> {
             #option::Some({ #value })
-        }
-    }
-}
-
-/// The residual alone, if the Jacobian is expensive.
-fn residual_alone(emitter: &Emitter, kernel: &Kernel, from_terms: super::code::KnownTokens) -> TokenStream {
-    let (span, private, vector) = (Span::mixed_site(), &emitter.header.private, emitter.header.vector());
-    let gradient = kernel.gradient();
-    let (lets, values) = emitter.statements(&kernel.graph, &gradient, from_terms);
-    let (residual, moved) = values.split_at(kernel.residual.len());
-    let (residual, moved) = (emitter.assembled(Form::Vector, residual), emitter.assembled(Form::Vector, moved));
-    let when = "an iteration without the Jacobian";
-    let documentation = super::docs::stage(&kernel.graph, &gradient, Stage::Iteration, when);
-    quote_spanned! {span=>
-        #[doc = #documentation]
-        #[cfg_attr(not(debug_assertions), inline(always))]
-        fn newton_residual(
-            constants: &Self::Constants,
-            terms: &Self::StepTerms,
-            half: &#vector,
-        ) -> #private::Residual<#vector> {
-            #lets
-            #private::Residual { momentum_defect: #residual, moving_kick: #private::core::option::Option::Some(#moved) }
         }
     }
 }

@@ -33,9 +33,6 @@ pub struct Kernel {
     pub residual: Vec<NodeId>,
     pub jacobian: Vec<NodeId>,
     pub kick_after: Vec<NodeId>,
-    /// The part of the diamond that depends on `F`, if the system is one in `F` rebuilt from `y`; `kick_after` is
-    /// `Ad*_F` of it.
-    pub moved: Vec<NodeId>,
     /// Whether the Newton system is written in `D = F − I`, with a right-trivialised Jacobian. On products of SO(3)
     /// and translations it is written in Cayley coordinates.
     pub in_increment: bool,
@@ -45,20 +42,7 @@ pub struct Kernel {
     pub candidates: Vec<Candidate>,
 }
 
-/// The cost of the free body's Jacobian beside a residual, as [`Operations::cost`], with the solves for the updates.
-const FREE_BODY: usize = 1_000;
-
 impl Kernel {
-    /// Whether the Jacobian costs so much more than the residual that a solve is faster with the free body's Jacobian.
-    ///
-    /// At common steps such a solve takes two to five residuals, instead of two or three systems.
-    pub fn jacobian_is_expensive(&self) -> bool {
-        let Some(taken) = self.candidates.first() else { return false };
-        let residual = count(&self.graph, &self.residual, Some(Stage::Iteration)).cost();
-        let jacobian = taken.operations.cost().saturating_sub(residual);
-        !self.moved.is_empty() && taken.denominators == 0 && jacobian > 3 * residual && jacobian > 2 * FREE_BODY
-    }
-
     /// The factors at which the Jacobian falls into blocks: no earlier factor couples to them or to later ones.
     pub fn ends(&self, group: &Group) -> Vec<usize> {
         let dimension = group.dimension();
@@ -75,22 +59,11 @@ impl Kernel {
     /// The operations of a step without the solve and of an iteration, for `Effect::OPERATIONS`.
     pub fn operations(&self) -> [u32; 2] {
         let before = [self.kick_before.as_slice(), &self.residual, &self.jacobian].concat();
-        let mut step = count(&self.graph, &before, Some(Stage::Step));
-        let mut outputs = before;
-        if self.jacobian_is_expensive() {
-            outputs = self.gradient();
-        } else {
-            step = step
-                + count(&self.graph, &self.kick_after, Some(Stage::Step))
-                + count(&self.graph, &self.kick_after, Some(Stage::Iteration));
-        }
-        let iteration = count(&self.graph, &outputs, Some(Stage::Iteration));
+        let step = count(&self.graph, &before, Some(Stage::Step))
+            + count(&self.graph, &self.kick_after, Some(Stage::Step))
+            + count(&self.graph, &self.kick_after, Some(Stage::Iteration));
+        let iteration = count(&self.graph, &before, Some(Stage::Iteration));
         [step, iteration].map(|operations| u32::try_from(operations.cost() / 2).unwrap_or(u32::MAX))
-    }
-
-    /// The residual and the moved part of the diamond.
-    pub fn gradient(&self) -> Vec<NodeId> {
-        [self.residual.as_slice(), &self.moved].concat()
     }
 
     /// The cost of a step with two Newton iterations.
@@ -266,15 +239,13 @@ pub fn kernel(derived: &Derivation) -> Kernel {
         found.push((Candidate { name, operations, denominators }, outputs));
     };
     let in_increment = !derived.group.rotates();
-    let mut moved = Vec::new();
     if in_increment {
         let given = with_inverse(&mut graph, derived, increment);
         let given = with_lets(&mut graph, derived, given);
         let outputs = system(&mut graph, derived, &given);
         add(&graph, "in F", 0, outputs);
     } else {
-        let (retracted, diamond, opaque) = retracted(&mut graph, derived);
-        moved = diamond;
+        let (retracted, opaque) = retracted(&mut graph, derived);
         add(&graph, "F rebuilt from y", 0, retracted.clone());
         if derived.closed.is_empty()
             && let Some(outputs) = expanded(&mut graph, &retracted, &opaque)
@@ -299,7 +270,6 @@ pub fn kernel(derived: &Derivation) -> Kernel {
         residual: residual.to_vec(),
         jacobian: jacobian.to_vec(),
         kick_after,
-        moved,
         in_increment,
         denominators: found.first().map_or(0, |(candidate, _)| candidate.denominators),
         candidates: found.into_iter().map(|(candidate, _)| candidate).collect(),
@@ -424,7 +394,7 @@ fn cleared_system(graph: &mut Graph, derived: &Derivation, cleared: &ClearedSyst
 ///
 /// Returns also the part of the diamond that depends on `F`, if it is derived, and the nodes that count as variables
 /// when the system is multiplied out.
-fn retracted(graph: &mut Graph, derived: &Derivation) -> (Vec<NodeId>, Vec<NodeId>, BTreeSet<NodeId>) {
+fn retracted(graph: &mut Graph, derived: &Derivation) -> (Vec<NodeId>, BTreeSet<NodeId>) {
     let y = coordinates(graph, derived);
     let (mut given, mut tangents) = (KnownEntries::new(), Vec::new());
     for (factor, (one, group)) in derived.directions.factors.iter().zip(derived.group.factors()).enumerate() {
@@ -437,7 +407,6 @@ fn retracted(graph: &mut Graph, derived: &Derivation) -> (Vec<NodeId>, Vec<NodeI
     let opaque = given.values().chain(&tangents).flat_map(|entries| entries.all().to_vec());
     let opaque: BTreeSet<NodeId> = opaque.filter(|&id| !matches!(graph.node(id), Node::Constant(_))).collect();
     let given = with_lets(graph, derived, given);
-    let moved = derived.moved.as_ref().map(|moved| components(graph, derived, &given, moved)).unwrap_or_default();
     let mut outputs = system(graph, derived, &given);
     let dimension = derived.group.dimension();
     let jacobian = outputs.split_off(dimension);
@@ -454,7 +423,7 @@ fn retracted(graph: &mut Graph, derived: &Derivation) -> (Vec<NodeId>, Vec<NodeI
             }
         }
     }
-    (outputs, moved, opaque)
+    (outputs, opaque)
 }
 
 /// The components of a factor.

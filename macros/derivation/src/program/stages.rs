@@ -22,14 +22,11 @@ pub struct Stages {
 impl Kernel {
     pub fn stages(&self) -> Stages {
         let system: Vec<NodeId> = [self.residual.as_slice(), &self.jacobian].concat();
-        // The moved part of the diamond is computed only with a residual alone.
-        let moved: &[NodeId] = if self.jacobian_is_expensive() { &self.moved } else { &[] };
-        let solved = [system.as_slice(), moved].concat();
         let change = self.kick_derivative.as_deref().unwrap_or_default();
-        let everything = [self.kick_before.as_slice(), &solved, &self.kick_after, change].concat();
+        let everything = [self.kick_before.as_slice(), &system, &self.kick_after, change].concat();
         Stages {
             constants: handed(&self.graph, &everything, Stage::Construction),
-            terms: handed(&self.graph, &solved, Stage::Step),
+            terms: handed(&self.graph, &system, Stage::Step),
             system,
         }
     }

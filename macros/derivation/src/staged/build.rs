@@ -21,7 +21,6 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
     let alone = |(graph, outputs): &Outputs| self::program(graph, &sources, none, outputs);
     let derived_term = |form, expression| alone(&kernel.beginning.term(derived, form, expression));
     let (limit_graph, at_rest) = kernel.beginning.limit(derived);
-    let is_expensive = kernel.jacobian_is_expensive();
     let generators = |factor: &crate::mathematics::group::Group| {
         factor.generators.iter().map(|one| one.iter().map(|entry| entry.to_f64()).collect()).collect()
     };
@@ -38,7 +37,6 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
         energy: declaration.energy,
         derivation: emit::text(declaration, chosen, equations.as_ref(), findings),
         has_kinetic: derived.limit.has_kinetic,
-        is_expensive,
         parts: [&derived.unknown, &derived.kick_before, &derived.kick_after].map(|part| !part.is_zero()),
         denominators: kernel.denominators,
         has_constant_inertia: !derived.inertia_varies(),
@@ -51,10 +49,7 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
             constants: program(none, &constants.keys().copied().collect::<Vec<_>>()),
             kick_before: program(constants, &kernel.kick_before),
             newton_system: program(constants, &stages.system),
-            newton_residual: program(
-                constants,
-                &if is_expensive { kernel.gradient() } else { kernel.residual.clone() },
-            ),
+            newton_residual: program(constants, &kernel.residual),
             kick_after: program(constants, &kernel.kick_after),
             kick_derivative: kernel.kick_derivative.as_ref().map(|outputs| program(constants, outputs)),
             momentum_jacobian: alone(&findings.jacobian),

@@ -57,17 +57,26 @@ pub enum Array {
     Velocity,
     /// The right side `a` of the momentum equation.
     Target,
+    /// The attitude, or the configuration.
+    Attitude,
+    /// The momentum.
+    Momentum,
+    /// Half the coordinates of the last increment, and their difference to those before.
+    History,
+    /// The determinants of a Jacobian, and its factors.
+    Factors,
 }
 
 impl Array {
     /// The number of arrays.
-    pub const COUNT: usize = 12;
+    pub const COUNT: usize = 16;
 
     /// All arrays, in order.
     #[rustfmt::skip]
     pub const ALL: [Self; Self::COUNT] = [
         Self::Step, Self::Parameters, Self::Constants, Self::Advected, Self::Next, Self::Element, Self::Increment,
-        Self::Inverse, Self::InverseIncrement, Self::Half, Self::Velocity, Self::Target,
+        Self::Inverse, Self::InverseIncrement, Self::Half, Self::Velocity, Self::Target, Self::Attitude, Self::Momentum,
+        Self::History, Self::Factors,
     ];
 }
 
@@ -236,7 +245,7 @@ pub struct Stages<P> {
     /// The residual, then the Jacobian. Values of `a` and `w` are computed again in each iteration, which takes no
     /// longer than passing them on.
     pub newton_system: P,
-    /// The residual; then the moving kick, if a solve is faster without the Jacobian.
+    /// The residual.
     pub newton_residual: P,
     /// `Ad*_F` of the diamond with `F`.
     pub kick_after: P,
@@ -303,8 +312,6 @@ pub struct StagedDeclaration {
     pub derivation: String,
     /// Whether there is a kinetic part.
     pub has_kinetic: bool,
-    /// Whether a solve is faster without the Jacobian.
-    pub is_expensive: bool,
     /// Whether the unknown part, the kick before the solve and the kick after it are nonzero.
     pub parts: [bool; 3],
     /// The power of `1 + |y|²` that the Newton system is multiplied by.

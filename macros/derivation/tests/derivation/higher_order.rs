@@ -4,7 +4,6 @@ use crate::common::{arguments_and_struct, derived};
 use liestep_derivation::mathematics::symbolic::Stage;
 use liestep_derivation::program::{Graph, KnownEntries, NodeId, count, kernel, with_values};
 
-const GEODESIC: &str = include_str!("../../../../examples/declarations/log_top.rs");
 const FOURTH: &str = include_str!("../../../../examples/declarations/fourth_order_top.rs");
 const SIXTH: &str = include_str!("../../../../examples/declarations/sixth_order_top.rs");
 
@@ -22,20 +21,6 @@ fn closed_lets_halve_the_operations_of_the_fourth_order_top() {
     assert!(iteration <= 1_550 && residual <= 350, "{iteration} {residual}");
 }
 
-/// Operations of the residual with the diamond beside it.
-fn with_diamond(file: &str) -> usize {
-    let (arguments, item) = arguments_and_struct(file);
-    let kernel = kernel(&derived(arguments, item));
-    count(&kernel.graph, &kernel.gradient(), Some(Stage::Iteration)).arithmetic
-}
-
-/// What is left of a second gradient is its last sum.
-#[test]
-fn one_gradient_gives_residual_and_diamond() {
-    let (_, residual) = operations(SIXTH);
-    assert!(with_diamond(SIXTH) <= residual + 20, "{} {residual}", with_diamond(SIXTH));
-}
-
 /// Its gradient by multipliers is the residual.
 #[test]
 fn a_gradient_costs_less_than_three_values_of_the_sixth_order_top() {
@@ -49,13 +34,4 @@ fn a_gradient_costs_less_than_three_values_of_the_sixth_order_top() {
     let (iteration, residual) = operations(SIXTH);
     assert!(residual < 3 * value, "{residual} for the gradient, {value} for the value");
     assert!(iteration <= 9_200 && residual <= 1_600, "{iteration} {residual}");
-}
-
-#[test]
-fn the_jacobians_of_the_higher_orders_are_expensive() {
-    let is_expensive = |file| {
-        let (arguments, item) = arguments_and_struct(file);
-        kernel(&derived(arguments, item)).jacobian_is_expensive()
-    };
-    assert_eq!([GEODESIC, FOURTH, SIXTH].map(is_expensive), [false, true, true]);
 }

@@ -5,38 +5,21 @@
 //! compiler underlines the first token.
 
 use expect_test::expect_file;
-use proc_macro2::{Delimiter, LineColumn, TokenStream, TokenTree};
+use proc_macro2::{LineColumn, TokenStream, TokenTree};
 
 use crate::common::{is_refused, tokens};
-use liestep_derivation::declared::Role;
+use crate::texts::Declared;
 
 /// The tokens that the compiler makes of a declaration.
 fn expansion(declaration: &str) -> TokenStream {
-    let mut tokens = tokens(declaration).into_iter();
-    let first = tokens.next();
-    if first.as_ref().is_some_and(|first| first.to_string() != "#") {
-        let body = tokens.find_map(|token| match token {
-            TokenTree::Group(body) => Some(body.stream()),
-            _ => None,
-        });
-        return liestep_derivation::matrix_group(body.expect("the braces of `matrix_group!`"));
+    if let Some(declared) = Declared::read(declaration) {
+        return declared.expanded();
     }
-    let Some(TokenTree::Group(attribute)) = tokens.next() else { panic!("{declaration}\nbegins with no attribute") };
-    let (mut role, mut arguments) = (None, TokenStream::new());
-    for token in attribute.stream() {
-        match token {
-            TokenTree::Ident(name) => role = Some(name.to_string()),
-            TokenTree::Group(group) if group.delimiter() == Delimiter::Parenthesis => arguments = group.stream(),
-            _ => {}
-        }
-    }
-    let role = match role.as_deref() {
-        Some("lagrangian") => Role::Lagrangian,
-        Some("force") => Role::Force,
-        Some("constraint") => Role::Constraint,
-        other => panic!("{declaration}\nhas the attribute {other:?}"),
-    };
-    liestep_derivation::expand(role, arguments, &tokens.collect())
+    let body = tokens(declaration).into_iter().find_map(|token| match token {
+        TokenTree::Group(body) => Some(body.stream()),
+        _ => None,
+    });
+    liestep_derivation::matrix_group(body.expect("the braces of `matrix_group!`"))
 }
 
 /// The messages of an expansion: where the text that each underlines begins and ends.
@@ -62,8 +45,18 @@ fn between(text: &str, ends: [LineColumn; 2]) -> String {
 }
 
 /// Whether a name stands in a text.
-fn has_name(text: &str, name: &str) -> bool {
+pub(super) fn has_name(text: &str, name: &str) -> bool {
     text.split(|letter: char| !letter.is_alphanumeric() && letter != '_').any(|word| word == name)
+}
+
+/// The messages with the texts that they underline, or that there are none.
+pub(super) fn outcome(declaration: &str, expansion: TokenStream) -> String {
+    if !is_refused(&expansion) {
+        return "accepted".to_owned();
+    }
+    let lines =
+        messages(expansion).into_iter().map(|(ends, message)| format!("{}: {message}", between(declaration, ends)));
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// A declaration with its messages, of which none says to write `h` for an `l`, which has no step.

@@ -13,7 +13,7 @@ fn heavy_top() -> StagedDeclaration {
 #[test]
 fn the_heavy_top_has_its_stages() {
     let top = heavy_top();
-    assert_eq!((top.parts, top.denominators, top.has_kinetic, top.is_expensive), ([true; 3], 1, true, false));
+    assert_eq!((top.parts, top.denominators, top.has_kinetic), ([true; 3], 1, true));
     assert_eq!(top.carried.iter().map(|w| (w.field, w.action)).collect::<Vec<_>>(), [(Some(4), Action::Covector(0))]);
     let names: Vec<&str> = top.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
     assert_eq!(names, ["J_d", "m", "g", "rho", "up"]);

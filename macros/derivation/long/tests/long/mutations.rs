@@ -29,7 +29,7 @@ const ERRORS: [(i128, i128); 2] = [(1, 10_000_000), (1, 1 << 50)];
 /// What is derived, with each of its own.
 type Term = (&'static str, fn(&mut Derivation) -> Option<&mut Expression>);
 
-const TERMS: [Term; 15] = [
+const TERMS: [Term; 14] = [
     ("right momentum map", |d| Some(&mut d.right_momentum)),
     ("left momentum map", |d| Some(&mut d.left_momentum)),
     ("diamond", |d| Some(&mut d.diamond)),
@@ -40,7 +40,6 @@ const TERMS: [Term; 15] = [
     ("unknown part", |d| Some(&mut d.unknown)),
     ("kick after", |d| Some(&mut d.kick_after)),
     ("kick derivative", |d| d.kick_derivative.as_mut()),
-    ("moved diamond", |d| d.moved.as_mut()),
     ("cleared residual", |d| d.cleared.as_mut().map(|cleared| &mut cleared.residual)),
     ("cleared Jacobian", |d| d.cleared.as_mut().map(|cleared| &mut cleared.jacobian)),
     ("momentum at the start", |d| d.ends.as_mut().map(|ends| &mut ends.momenta[0])),
@@ -48,12 +47,11 @@ const TERMS: [Term; 15] = [
 ];
 
 /// The stages of a step, as they are emitted.
-const STAGES: [fn(&mut Kernel) -> &mut [NodeId]; 6] = [
+const STAGES: [fn(&mut Kernel) -> &mut [NodeId]; 5] = [
     |kernel| &mut kernel.kick_before,
     |kernel| &mut kernel.residual,
     |kernel| &mut kernel.jacobian,
     |kernel| &mut kernel.kick_after,
-    |kernel| &mut kernel.moved,
     |kernel| kernel.kick_derivative.as_deref_mut().unwrap_or_default(),
 ];
 
@@ -405,7 +403,7 @@ fn emitted<T: Number>(identities: &Identities, sample: &Sample<T>, mut number: i
     let Terms { graph, momentum, jacobian, right, left, diamond, energy } = &identities.terms;
     let terms = [momentum.as_slice(), jacobian, right, left, diamond, energy.as_slice()].concat();
     let kernel = identities.kernel;
-    let stages = [&kernel.kick_before, &kernel.residual, &kernel.jacobian, &kernel.kick_after, &kernel.moved];
+    let stages = [&kernel.kick_before, &kernel.residual, &kernel.jacobian, &kernel.kick_after];
     let change = kernel.kick_derivative.clone().unwrap_or_default();
     let stages = stages.into_iter().chain([&change]).flatten().copied().collect::<Vec<_>>();
     let mut all = [evaluated(graph, &terms, &input), evaluated(&kernel.graph, &stages, &input)].concat();

@@ -252,12 +252,6 @@ impl<'a> Identities<'a> {
         let (before, after) = (kick(&kernel.kick_before), kick(&kernel.kick_after));
         let change = kernel.kick_derivative.as_ref().map_or_else(Vec::new, |change| kick(change));
         let jacobian = iteration(&self.stages.system[dimension..]);
-        // The moved part of the diamond is emitted with the residual alone, if the Jacobian is expensive.
-        let moved = if kernel.jacobian_is_expensive() {
-            iteration(&kernel.moved)
-        } else {
-            evaluated(&kernel.graph, &kernel.moved, &inputs)
-        };
         let a: Vec<T> = momentum.iter().zip(before).map(|(&momentum, kick)| momentum + kick).collect();
         // The residual is (h/2) (1 + |y|²)ⁿ (U − a), whose factor is positive.
         let square = dot(coordinates, coordinates);
@@ -268,13 +262,10 @@ impl<'a> Identities<'a> {
             same("Newton residual", found.value, factor * (a[k] - point.target[k]))?;
         }
         point.are_slopes("Newton Jacobian of the step", &jacobian, &residual, same)?;
-        // μ⁺ = Ad*_F a + k₁⁺. The moved part of the diamond is k₁⁺ before Ad*_F.
+        // μ⁺ = Ad*_F a + k₁⁺.
         let turned = components_of(group, &products(&products(matrices, &point.element), inverses));
         let after = dot(&after, &point.direction);
         same("transported momentum", dot(&a, &turned) + after, declared.left)?;
-        if !moved.is_empty() {
-            same("transported momentum", dot(&moved, &turned), after)?;
-        }
         if !change.is_empty() {
             let [forwards, backwards] = &point.exponentials;
             let (dual, values) = (&point.dual, point.dual.moved([backwards, forwards]));

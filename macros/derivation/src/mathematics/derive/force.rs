@@ -86,7 +86,6 @@ pub(super) fn force(
         kick_before: parts.kick_before,
         kick_derivative: None,
         unknown: transport::in_small_increment(&context, &parts.unknown),
-        moved: None,
         kick_after: transport::with_small_increment(&context, &kick_after),
         shown_kick_after: kick_after,
         half_step: context.half_step(),

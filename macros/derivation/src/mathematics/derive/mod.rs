@@ -145,8 +145,6 @@ pub struct Derivation {
     /// The part of `μ` that depends on `F`, written in `D = F − I`: its constants cancel exactly, so that a small step
     /// keeps its digits.
     pub unknown: Expression,
-    /// The rest of the diamond, in `F` and `w`; `None` for a force, which has another kick after the step.
-    pub moved: Option<Expression>,
     /// `Ad*_F` of the rest of the diamond, in `F` and `w⁺`; its terms in `1/h` are written in `D`.
     pub kick_after: Expression,
     /// The kick after the step in printed form, without `D`.
@@ -249,7 +247,6 @@ fn lagrangian(declared: &DeclaredFunction) -> Result<Derivation, LimitError> {
         kick_before: parts.kick_before,
         kick_derivative,
         unknown,
-        moved: Some(parts.moved),
         kick_after: transport::with_small_increment(&context, &parts.kick_after),
         shown_kick_after: parts.kick_after,
         previous: transport::previous(&context),

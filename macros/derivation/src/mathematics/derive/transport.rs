@@ -18,8 +18,6 @@ use crate::mathematics::symbolic::{Expression, Monomial, Stage, SymbolId, degree
 pub(super) struct Parts {
     pub(super) kick_before: Expression,
     pub(super) unknown: Expression,
-    /// The part of the diamond that depends on `F`.
-    pub(super) moved: Expression,
     pub(super) kick_after: Expression,
 }
 
@@ -39,7 +37,7 @@ pub(super) fn parts(context: &Context, momentum: &Expression, diamond: &Expressi
         map.insert(one.first, context.product(&context.product(&f, &context.first(factor)), &inverse));
     }
     let kick_after = context.substituted(&moved, &map);
-    Parts { kick_before, unknown, moved, kick_after }
+    Parts { kick_before, unknown, kick_after }
 }
 
 /// `w = F·w⁺`.

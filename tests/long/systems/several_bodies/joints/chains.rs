@@ -4,30 +4,34 @@ use core::array::from_fn;
 
 use liestep::groups::{CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::Random;
-use liestep::methods::{BallJoint, Chain, Joints, PinJoint, PlacedJoint};
+use liestep::methods::{BallJoint, Chain, PinJoint};
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
+use liestep::{NonstandardInertia, SO3, SetupError, StepError};
 use nalgebra::{Vector3, Vector6};
 
 use super::super::links::{irregular, rods};
 use super::super::{apart, part};
-use super::{Body, Components, EPSILON, Free, Held, row, scene, six, watched, whole};
+use super::{Body, Components, EPSILON, Free, Held, Joined, falling, jointed, row, six, watched};
 
 /// The bodies and joints of a chain, with coordinates about the centres of mass.
-fn with_joints<const N: usize>(chain: &Chain<N>, h: f64) -> Held<BallJoint, 3, N, N, 0> {
+fn with_joints<const N: usize>(chain: &Chain<N>, h: f64) -> Held<N> {
+    checked(chain, h).unwrap()
+}
+
+fn checked<const N: usize>(chain: &Chain<N>, h: f64) -> Result<Held<N>, SetupError> {
     let bodies = chain.links.map(|link| {
         let central = link.J_d.as_matrix() - link.c * link.c.transpose() * link.m;
         Free { m: link.m, K: NonstandardInertia::new(central).unwrap() }
     });
-    let joints = Joints::tree(from_fn(|k| {
+    let joints: [_; N] = from_fn(|k| {
         let below = -chain.links[k].c;
         if k == 0 {
-            return PlacedJoint::to_space(BallJoint { above: Vector3::zeros(), below }, 0);
+            return Joined::to_space(BallJoint { above: Vector3::zeros(), below }, 0);
         }
         let upper = chain.links[k - 1];
-        PlacedJoint::between(BallJoint { above: upper.rho - upper.c, below }, k - 1, k)
-    }));
-    Stepper::jointed(scene(bodies, chain.g, chain.up), joints, h).unwrap()
+        Joined::between(BallJoint { above: upper.rho - upper.c, below }, k - 1, k)
+    });
+    jointed(falling(bodies, chain.g, chain.up), &joints, h)
 }
 
 /// The positions and velocities of the links' centres of mass.
@@ -45,7 +49,7 @@ fn placed<const N: usize>(
         joint += r * link.rho;
         velocity += r * omega.cross(&link.rho);
     }
-    (all.map(|(body, _)| body), Bodies(all.map(|(_, velocity)| velocity)))
+    (all.map(|(body, _)| body), all.map(|(_, velocity)| velocity))
 }
 
 /// Joints with multipliers and the minimal form are one integrator: they differ by rounding only.
@@ -64,16 +68,15 @@ fn a_chain_moves_as_in_its_minimal_form() {
         let velocities = Bodies(from_fn(|_| random.sample()));
         let mut expected = minimal.start(attitudes, velocities).unwrap();
         let (places, moving) = placed(&chain, &attitudes, &velocities);
-        let mut state = stepper.start(places, moving).unwrap();
+        let mut state = stepper.start(&places, &moving).unwrap();
         assert!((stepper.energy(&state) - minimal.energy(&expected)).abs() < 1e-12);
         let mut iterations = [0; 2];
         for _ in 0..5 {
             iterations[0] += minimal.run(&mut expected, 20).unwrap();
             iterations[1] += stepper.run(&mut state, 20).unwrap();
-            let found = state.attitude().map(|body| body.0);
-            let velocity = stepper.velocity(&state);
+            let (found, velocity) = (stepper.turns(&state), stepper.velocities(&state));
             let other = minimal.velocity(&expected);
-            let slower = (0..N).map(|k| (part(&velocity.0[k], 0) - other.0[k]).amax()).fold(0.0, f64::max);
+            let slower = (0..N).map(|k| (part(&velocity[k], 0) - other.0[k]).amax()).fold(0.0, f64::max);
             let errors = [apart(&found, &expected.attitude()), slower, stepper.widest_gap(&state)];
             println!("{h}: {errors:?}");
             assert!(errors[0] < 1e-12 && errors[1] < 1e-12 && errors[2] < 4.0 * EPSILON * 5.0, "{errors:?}");
@@ -97,7 +100,7 @@ fn a_hundred_links_let_go_horizontally() {
         let flat = [SO3::from_euler_angles(0.3, core::f64::consts::FRAC_PI_2, 0.0); 100];
         let at_rest = Bodies([Vector3::zeros(); 100]);
         let (places, moving) = placed(&chain, &flat, &at_rest);
-        let mut state = stepper.start(places, moving).unwrap();
+        let mut state = stepper.start(&places, &moving).unwrap();
         let mut expected = minimal.start(flat, at_rest).unwrap();
         let energies = [stepper.energy(&state), minimal.energy(&expected)];
         let (mut gap, mut most) = (0.0_f64, 0.0_f64);
@@ -110,7 +113,7 @@ fn a_hundred_links_let_go_horizontally() {
             run(&mut expected);
             gap = gap.max(stepper.widest_gap(&state));
         }
-        let off = apart(&state.attitude().map(|body| body.0), &expected.attitude());
+        let off = apart(&stepper.turns(&state), &expected.attitude());
         for _ in 0..tens[1] {
             run(&mut expected);
         }
@@ -140,28 +143,27 @@ fn a_tree() {
     });
     let joints: [BallJoint; N] = from_fn(|_| BallJoint { above: next(0.5), below: next(0.5) });
     let parents = [None, Some(0), Some(0), Some(0), Some(2)];
-    let straight: [PlacedJoint<BallJoint>; N] =
-        from_fn(|k| PlacedJoint { joint: joints[k], above: parents[k], below: k });
-    let turned: [PlacedJoint<BallJoint>; N] = from_fn(|k| {
-        let PlacedJoint { joint, above, below } = straight[N - 1 - k];
+    let straight: [Joined<BallJoint>; N] = from_fn(|k| Joined { joint: joints[k], above: parents[k], below: k });
+    let turned: [Joined<BallJoint>; N] = from_fn(|k| {
+        let Joined { joint, above, below } = straight[N - 1 - k];
         let back = BallJoint { above: joint.below, below: joint.above };
-        above.map_or(straight[N - 1 - k], |above| PlacedJoint::between(back, below, above))
+        above.map_or(straight[N - 1 - k], |above| Joined::between(back, below, above))
     });
-    let about = from_fn(|_| {
+    let about: [Body; N] = from_fn(|_| {
         let turn: SO3 = <CayleyRetraction as Retraction<SO3>>::retract(&next(1.0));
         (turn, R3::from(next(1.0)))
     });
-    let moving = Bodies(from_fn(|_| six(&next(1.0), &next(1.0))));
+    let moving: Components<N> = from_fn(|_| six(&next(1.0), &next(1.0)));
     let pivot = joints[0].above;
     let about_pivot = |[p, l]: [Vector3<f64>; 2]| (l - pivot.cross(&p)).z;
     let ends = [straight, turned].map(|tree| {
-        let stepper = Stepper::jointed(scene(bodies, 9.81, Vector3::z()), Joints::tree(tree), 0.005).unwrap();
-        let mut state = stepper.start_nearest(about, moving).unwrap();
-        let (energy, vertical) = (stepper.energy(&state), about_pivot(whole(&state)));
+        let stepper = jointed(falling(bodies, 9.81, Vector3::z()), &tree, 0.005).unwrap();
+        let mut state = stepper.start_nearest(&about, &moving).unwrap();
+        let (energy, vertical) = (stepper.energy(&state), about_pivot(stepper.whole(&state)));
         stepper.run(&mut state, 200).unwrap();
-        let middle = state.attitude().map(|body| body.0);
+        let middle = stepper.turns(&state);
         let [off, gap] = watched(&stepper, &mut state, energy, 2000);
-        let moved = about_pivot(whole(&state)) - vertical;
+        let moved = about_pivot(stepper.whole(&state)) - vertical;
         println!("energy {energy:.3} within {off:.1e}, momentum {moved:.1e}, gap {gap:.1e}");
         assert!(off < 0.02 && moved.abs() < 1e-11 && gap < 4.0 * EPSILON * 2.0);
         middle
@@ -179,54 +181,54 @@ fn errors_name_the_joint() {
     let (places, moving) = placed(&chain, &attitudes, &velocities);
     let mut open = places;
     open[2].1 = R3::from(open[2].1.translation() + Vector3::x() * 1e-6);
-    let error = stepper.start(open, moving).unwrap_err();
+    let error = stepper.start(&open, &moving).unwrap_err();
     println!("{error}");
     assert!(matches!(error, SetupError::OffConstraint { joint: 2 | 3, by } if (by - 1e-6).abs() < 1e-12));
     let mut opening = moving;
-    opening.0[1][4] += 1e-6;
-    let error = stepper.start(places, opening).unwrap_err();
+    opening[1][4] += 1e-6;
+    let error = stepper.start(&places, &opening).unwrap_err();
     println!("{error}");
     assert!(matches!(error, SetupError::OffVelocity { joint: 1 | 2, by } if (by - 1e-6).abs() < 1e-12));
     // Configuration and velocities are corrected, and valid ones stay the same.
-    let state = stepper.start_nearest(open, opening).unwrap();
-    let off = (state.attitude()[2].1.translation() - places[2].1.translation()).norm();
+    let state = stepper.start_nearest(&open, &opening).unwrap();
+    let off = (stepper.attitude(&state, 2).1.translation() - places[2].1.translation()).norm();
     assert!(off < 1e-6 && off > 1e-9 && stepper.widest_gap(&state) < 4.0 * EPSILON * 4.0, "{off:e}");
-    let state = stepper.start_nearest(places, moving).unwrap();
-    let (right, found) = (stepper.start(places, moving).unwrap(), stepper.velocity(&state));
-    assert!(apart(&state.attitude().map(|body| body.0), &attitudes) < 1e-14);
-    assert!((found - stepper.velocity(&right)).0.iter().all(|difference| difference.amax() < 1e-13));
+    let state = stepper.start_nearest(&places, &moving).unwrap();
+    let (right, found) = (stepper.start(&places, &moving).unwrap(), stepper.velocities(&state));
+    assert!(apart(&stepper.turns(&state), &attitudes) < 1e-14);
+    assert!(found.iter().zip(stepper.velocities(&right)).all(|(a, b)| (a - b).amax() < 1e-13));
 
     let link = BallJoint { above: Vector3::z(), below: -Vector3::z() };
-    let scene = scene([Free { m: 1.0, K: rods::<1>(1.0).links[0].J_d }; 3], 9.81, Vector3::z());
-    let refused = |tree: [PlacedJoint<BallJoint>; 2]| Stepper::jointed(scene, Joints::tree(tree), 0.01).unwrap_err();
-    let first = PlacedJoint::between(link, 0, 1);
-    assert!(matches!(refused([first, PlacedJoint::between(link, 1, 3)]), SetupError::Joint { joint: 1, .. }));
-    assert!(matches!(refused([first, PlacedJoint::between(link, 2, 2)]), SetupError::Joint { joint: 1, .. }));
-    assert!(matches!(refused([first, PlacedJoint::between(link, 1, 0)]), SetupError::Joint { .. }));
+    let bodies = falling([Free { m: 1.0, K: rods::<1>(1.0).links[0].J_d }; 3], 9.81, Vector3::z());
+    let refused = |joints: [Joined<BallJoint>; 2]| jointed(bodies, &joints, 0.01).unwrap_err();
+    let first = Joined::between(link, 0, 1);
+    assert!(matches!(refused([first, Joined::between(link, 1, 3)]), SetupError::Joint { joint: 1, .. }));
+    assert!(matches!(refused([first, Joined::between(link, 2, 2)]), SetupError::Joint { joint: 1, .. }));
+    // Two ball joints at different points of two bodies close a loop, and are redundant in part.
+    let twice = [first, Joined::between(BallJoint { above: -link.above, below: -link.below }, 1, 0)];
+    let redundant = jointed(bodies, &twice, 0.01).unwrap();
+    let at = [0.0, 2.0, 9.0].map(|z| (SO3::identity(), R3::from(Vector3::z() * z)));
+    let error_of_two = redundant.start(&at, &[Vector6::zeros(); 3]).unwrap_err();
+    assert!(matches!(error_of_two, SetupError::RedundantJoint { joint: 1, .. }), "{error_of_two}");
     let broken = BallJoint { below: Vector3::new(0.0, f64::NAN, 0.0), ..link };
-    let error = refused([first, PlacedJoint::between(broken, 1, 2)]);
-    assert!(matches!(error, SetupError::JointParameter { joint: 1, field: "below", .. }), "{error}");
+    let broken = refused([first, Joined::between(broken, 1, 2)]);
+    assert!(matches!(broken, SetupError::JointParameter { joint: 1, field: "below", .. }), "{broken}");
     let (axis_above, axis_below) = (Vector3::zeros(), Vector3::x());
     let pin = PinJoint { above: Vector3::z(), below: Vector3::z(), axis_above, axis_below };
-    let error = Stepper::jointed(scene, Joints::tree([PlacedJoint::between(pin, 0, 1)]), 0.01).unwrap_err();
-    assert!(matches!(error, SetupError::JointParameter { joint: 0, field: "axis_above", .. }), "{error}");
-    assert!(matches!(with_joints_checked(&chain, f64::NAN), Err(SetupError::InvalidStep { .. })));
+    let broken = jointed(bodies, &[Joined::between(pin, 0, 1)], 0.01).unwrap_err();
+    assert!(matches!(broken, SetupError::JointParameter { joint: 0, field: "axis_above", .. }), "{broken}");
+    assert!(matches!(checked(&chain, f64::NAN), Err(SetupError::InvalidStep { .. })));
 
     // A step that turns a link too far names it.
     let long = with_joints(&chain, 0.1);
     let mut fast = velocities;
     fast.0[2] = Vector3::new(0.0, 0.0, 50.0);
     let (places, moving) = placed(&chain, &attitudes, &fast);
-    let mut state = long.start(places, moving).unwrap();
-    let before = state;
+    let mut state = long.start(&places, &moving).unwrap();
+    let before = state.clone();
     let error = long.step(&mut state).unwrap_err();
     println!("{error}");
     assert!(matches!(error, StepError::UnsolvedBody { body: 2, .. }) && state == before, "{error}");
-}
-
-fn with_joints_checked(chain: &Chain<4>, h: f64) -> Result<(), SetupError> {
-    let stepper = with_joints(chain, 0.01);
-    Stepper::jointed(*stepper.scene(), *stepper.plan().joints(), h).map(|_| ())
 }
 
 /// Systems of all sizes, at rest and nearly at rest: rounding errors are compared with the system's own scales.
@@ -237,16 +239,15 @@ fn small_and_slow() {
         let moments = Vector3::new(0.02, 0.1, 0.1) * (mass * size * size);
         let K = NonstandardInertia::from_principal_moments(moments).unwrap();
         let link = BallJoint { above: e, below: -e };
-        let joints = Joints::tree([PlacedJoint::between(link, 0, 1), PlacedJoint::between(link, 1, 2)]);
-        let scene = scene([Free { m: mass, K }; 3], 0.0, Vector3::z());
-        let stepper = Stepper::jointed(scene, joints, 0.01).unwrap();
+        let joints = [Joined::between(link, 0, 1), Joined::between(link, 1, 2)];
+        let stepper = jointed(falling([Free { m: mass, K }; 3], 0.0, Vector3::z()), &joints, 0.01).unwrap();
         let about = row([0.9, 0.2, -0.5]).0.map(|(turn, place)| (turn, R3::from(place.translation() * size)));
         for rate in [0.0, 1e-7, 1.0] {
-            let moving = Bodies([six(&(Vector3::new(0.3, 1.0, -0.2) * rate), &Vector3::zeros()); 3]);
-            let mut state = stepper.start_nearest(about, moving).unwrap();
-            let [p, l] = whole(&state);
+            let moving = [six(&(Vector3::new(0.3, 1.0, -0.2) * rate), &Vector3::zeros()); 3];
+            let mut state = stepper.start_nearest(&about, &moving).unwrap();
+            let [p, l] = stepper.whole(&state);
             stepper.run(&mut state, 500).unwrap();
-            let after = whole(&state);
+            let after = stepper.whole(&state);
             let off = [(after[0] - p).norm() / (mass * size), (after[1] - l).norm() / (mass * size * size)];
             println!("{size:e} {rate:e}: {off:?}, gap {:e}", stepper.widest_gap(&state) / size);
             assert!(stepper.widest_gap(&state) < 4.0 * EPSILON * size);

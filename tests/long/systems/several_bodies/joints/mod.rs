@@ -9,15 +9,14 @@ mod loops;
 
 use core::array::from_fn;
 
-use declarations::FallingBody;
 use declarations::motions::number;
+use declarations::{FallingBody, Strut};
 use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::derivative;
 use liestep::mechanics::{DiscreteLagrangian, Each, Placement};
-use liestep::methods::{BallJoint, Constraint, JointedBodies, Place, PlacedJoint};
-use liestep::motion::{Integrator, Motion};
+use liestep::methods::{BallJoint, Constraint, Multibody, MultibodyStepper, PinJoint, Place};
 use liestep::numbers::Bodies;
-use liestep::{NonstandardInertia, SO3, Stepper};
+use liestep::{NonstandardInertia, SO3, SetupError};
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
 use serde_json::Value;
 
@@ -25,9 +24,7 @@ use super::{Body, six};
 
 type Scene<const N: usize> = Placement<Each<N>, FallingBody, N>;
 
-type Held<C, const K: usize, const N: usize, const T: usize, const L: usize> =
-    Stepper<Scene<N>, JointedBodies<Scene<N>, C, K, N, T, L>>;
-type Components<const N: usize> = Bodies<Vector6<f64>, N>;
+type Components<const N: usize> = [Vector6<f64>; N];
 
 const EPSILON: f64 = f64::EPSILON;
 
@@ -38,8 +35,141 @@ struct Free {
     K: NonstandardInertia,
 }
 
-fn scene<const N: usize>(bodies: [Free; N], g: f64, up: Vector3<f64>) -> Scene<N> {
-    Each::<N>::of(bodies.map(|Free { m, K }| FallingBody { m, J_d: K, g, up }))
+fn falling<const N: usize>(bodies: [Free; N], g: f64, up: Vector3<f64>) -> [FallingBody; N] {
+    bodies.map(|Free { m, K }| FallingBody { m, J_d: K, g, up })
+}
+
+/// A joint between two bodies, or between space and a body.
+#[derive(Clone, Copy, Debug)]
+struct Joined<C> {
+    joint: C,
+    above: Option<usize>,
+    below: usize,
+}
+
+impl<C> Joined<C> {
+    const fn between(joint: C, above: usize, below: usize) -> Self {
+        Self { joint, above: Some(above), below }
+    }
+
+    const fn to_space(joint: C, below: usize) -> Self {
+        Self { joint, above: None, below }
+    }
+}
+
+/// A ball joint or a pin.
+#[derive(Clone, Copy, Debug)]
+enum Either {
+    Ball(BallJoint),
+    Pin(PinJoint),
+}
+
+/// A joint that is added to a system.
+trait Joins: Copy {
+    fn join(self, system: &mut Multibody, above: Option<usize>, below: usize);
+
+    /// The functions, and zeros after them.
+    fn gaps(&self, above: &Place, below: &Place) -> Vector6<f64>;
+}
+
+macro_rules! joins {
+    ($($joint:ty: $functions:literal),+) => {$(
+        impl Joins for $joint {
+            fn join(self, system: &mut Multibody, above: Option<usize>, below: usize) {
+                system.join(self, above, below);
+            }
+
+            fn gaps(&self, above: &Place, below: &Place) -> Vector6<f64> {
+                let gap = <Self as Constraint<$functions>>::gap(self, above, below);
+                Vector6::from_fn(|row, _| gap.get(row).copied().unwrap_or(0.0))
+            }
+        }
+    )+};
+}
+
+joins!(BallJoint: 3, PinJoint: 5, Strut: 1);
+
+impl Joins for Either {
+    fn join(self, system: &mut Multibody, above: Option<usize>, below: usize) {
+        match self {
+            Self::Ball(ball) => ball.join(system, above, below),
+            Self::Pin(pin) => pin.join(system, above, below),
+        }
+    }
+
+    fn gaps(&self, above: &Place, below: &Place) -> Vector6<f64> {
+        match self {
+            Self::Ball(ball) => ball.gaps(above, below),
+            Self::Pin(pin) => pin.gaps(above, below),
+        }
+    }
+}
+
+/// A stepper of falling bodies in joints, and the bodies without them.
+#[derive(Clone, Debug)]
+struct Held<const N: usize> {
+    bodies: [FallingBody; N],
+    stepper: MultibodyStepper,
+}
+
+impl<const N: usize> core::ops::Deref for Held<N> {
+    type Target = MultibodyStepper;
+
+    fn deref(&self) -> &MultibodyStepper {
+        &self.stepper
+    }
+}
+
+impl<const N: usize> Held<N> {
+    fn scene(&self) -> Scene<N> {
+        Each::<N>::of(self.bodies)
+    }
+
+    fn attitudes(&self, state: &[f64]) -> [Body; N] {
+        from_fn(|body| self.attitude(state, body))
+    }
+
+    fn turns(&self, state: &[f64]) -> [SO3; N] {
+        self.attitudes(state).map(|body| body.0)
+    }
+
+    fn momenta(&self, state: &[f64]) -> Components<N> {
+        from_fn(|body| self.momentum(state, body))
+    }
+
+    fn velocities(&self, state: &[f64]) -> Components<N> {
+        from_fn(|body| self.velocity(state, body))
+    }
+
+    /// The momentum of all bodies, and their angular momentum about the origin.
+    fn whole(&self, state: &[f64]) -> [Vector3<f64>; 2] {
+        super::whole(&self.attitudes(state), &Bodies(self.momenta(state)))
+    }
+
+    /// Attitudes and momenta, for the check of the joints' work.
+    fn motion(&self, state: &[f64]) -> ([Body; N], Components<N>) {
+        (self.attitudes(state), self.momenta(state))
+    }
+}
+
+/// The system of these bodies and joints.
+fn system<C: Joins, const N: usize>(bodies: [FallingBody; N], joints: &[Joined<C>]) -> Multibody {
+    let mut system = Multibody::new();
+    for body in bodies {
+        system.body(body);
+    }
+    for &Joined { joint, above, below } in joints {
+        joint.join(&mut system, above, below);
+    }
+    system
+}
+
+fn jointed<C: Joins, const N: usize>(
+    bodies: [FallingBody; N],
+    joints: &[Joined<C>],
+    h: f64,
+) -> Result<Held<N>, SetupError> {
+    system(bodies, joints).stepper(h).map(|stepper| Held { bodies, stepper })
 }
 
 /// The ends of a rod of one metre, from its centre.
@@ -55,20 +185,15 @@ fn ball(above: Vector3<f64>, below: Vector3<f64>) -> BallJoint {
 }
 
 /// Rods one after the other, the first from the origin.
-fn chained<const N: usize>() -> [PlacedJoint<BallJoint>; N] {
+fn chained<const N: usize>() -> [Joined<BallJoint>; N] {
     from_fn(|k| match k {
-        0 => PlacedJoint::to_space(ball(Vector3::zeros(), LEFT), 0),
-        _ => PlacedJoint::between(ball(RIGHT, LEFT), k - 1, k),
+        0 => Joined::to_space(ball(Vector3::zeros(), LEFT), 0),
+        _ => Joined::between(ball(RIGHT, LEFT), k - 1, k),
     })
 }
 
 /// Makes steps; returns the largest distance of the energy from this one, J, and the widest gap of a joint, m.
-fn watched<C: Constraint<K>, const K: usize, const N: usize, const T: usize, const L: usize>(
-    stepper: &Held<C, K, N, T, L>,
-    state: &mut <Held<C, K, N, T, L> as Integrator>::State,
-    energy: f64,
-    steps: u32,
-) -> [f64; 2] {
+fn watched(stepper: &MultibodyStepper, state: &mut [f64], energy: f64, steps: u32) -> [f64; 2] {
     (0..steps).fold([0.0_f64; 2], |[off, gap], _| {
         stepper.step(state).unwrap();
         [off.max((stepper.energy(state) - energy).abs()), gap.max(stepper.widest_gap(state))]
@@ -77,14 +202,6 @@ fn watched<C: Constraint<K>, const K: usize, const N: usize, const T: usize, con
 
 fn place(body: &Body) -> Place {
     Place { attitude: *body.0.as_matrix(), position: body.1.translation() }
-}
-
-/// The momentum of all bodies, and their angular momentum about the origin.
-fn whole<A, const N: usize>(motion: &Motion<[Body; N], A>) -> [Vector3<f64>; 2]
-where
-    A: liestep::groups::Advected<[Body; N]>,
-{
-    super::whole(&motion.attitude(), &motion.momentum())
 }
 
 /// Links of one metre in a row from the origin, each tilted about the y axis by its angle, and the end of the last.
@@ -115,18 +232,15 @@ fn moved(body: &Body, k: usize, s: f64) -> Body {
 
 /// The part of an impulse on bodies in this configuration that isn't in the span of the joints' slopes, by differences
 /// of the constraints: it does work on motions that leave the joints closed.
-fn working<C: Constraint<K>, const K: usize, const N: usize>(
-    joints: &[PlacedJoint<C>],
-    bodies: &[Body; N],
-    impulse: &Components<N>,
-) -> f64 {
-    let gap = |joined: &PlacedJoint<C>, bodies: &[Body; N]| {
+fn working<C: Joins, const N: usize>(joints: &[Joined<C>], bodies: &[Body; N], impulse: &Components<N>) -> f64 {
+    const K: usize = 6;
+    let gap = |joined: &Joined<C>, bodies: &[Body; N]| {
         let above = joined.above.map_or(Place::SPACE, |above| place(&bodies[above]));
-        joined.joint.gap(&above, &place(&bodies[joined.below]))
+        joined.joint.gaps(&above, &place(&bodies[joined.below]))
     };
     let mut slopes = DMatrix::zeros(6 * N, K * joints.len());
     for ((j, joined), k) in joints.iter().enumerate().flat_map(|joint| (0..6 * N).map(move |k| (joint, k))) {
-        for row in 0..joined.joint.rows() {
+        for row in 0..K {
             slopes[(k, K * j + row)] = derivative(|s| {
                 let mut changed = *bodies;
                 changed[k / 6] = moved(&bodies[k / 6], k % 6, s);
@@ -134,30 +248,27 @@ fn working<C: Constraint<K>, const K: usize, const N: usize>(
             });
         }
     }
-    let impulse = DVector::from_fn(6 * N, |k, _| impulse.0[k / 6][k % 6]);
+    let impulse = DVector::from_fn(6 * N, |k, _| impulse[k / 6][k % 6]);
     let multipliers = slopes.clone().svd(true, true).solve(&impulse, 1e-9).unwrap();
     (impulse - slopes * multipliers).amax()
 }
 
 /// Checks D'Alembert's principle: the joints' impulses before and after a step do no work on motions that leave the
 /// joints closed. Half of the step's force is applied at either end.
-fn assert_no_work<S, C, const K: usize, const N: usize>(
-    stepper: (&S, f64),
-    joints: &[PlacedJoint<C>],
+fn assert_no_work<S, C: Joins, const N: usize>(
+    (l, h): (&S, f64),
+    joints: &[Joined<C>],
     given: &Components<N>,
-    [before, after]: [&Motion<[Body; N], S::Advected>; 2],
+    [(start, before), (end, after)]: [([Body; N], Components<N>); 2],
 ) where
     S: DiscreteLagrangian<Scalar = f64, Group = [Body; N]>,
-    C: Constraint<K>,
 {
-    let (l, h) = stepper;
-    let [start, end] = [before, after].map(Motion::attitude);
     let f: [Body; N] = from_fn(|k| start[k].inverse().compose(&end[k]));
     let (w, f) = (l.advected().seen_from(&start), f.matrix());
-    let half = *given * (0.5 * h);
-    let taken = before.momentum() + half - l.legendre_minus(&f, &w, h);
-    let left = l.legendre_plus(&f, &w, h) + half - after.momentum();
-    let size = taken.0.iter().map(Vector6::amax).fold(0.0, f64::max);
+    let half = Bodies(*given) * (0.5 * h);
+    let taken = (Bodies(before) + half - l.legendre_minus(&f, &w, h)).0;
+    let left = (l.legendre_plus(&f, &w, h) + half - Bodies(after)).0;
+    let size = taken.iter().map(Vector6::amax).fold(0.0, f64::max);
     let work = [working(joints, &start, &taken), working(joints, &end, &left)];
     println!("of {size:.1e} these work: {work:?}");
     assert!(size > 1e-3 && work.iter().all(|&work| work < 1e-9 * size.max(1.0)), "{work:?} of {size}");

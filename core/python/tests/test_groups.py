@@ -1,0 +1,100 @@
+"""Groups that the library has no type of, by a basis of their Lie algebra: order, momentum, and the group's relation."""
+
+import numpy as np
+import pytest
+
+import liestep as ls
+
+
+def unit(n, *entries):
+    matrix = np.zeros((n, n))
+    for row, column, value in entries:
+        matrix[row, column] = value
+    return matrix
+
+
+def special_linear(n):
+    apart = [unit(n, (i, j, 1)) for i in range(n) for j in range(n) if i != j]
+    return apart + [unit(n, (k, k, 1), (k + 1, k + 1, -1)) for k in range(n - 1)]
+
+
+def symplectic():
+    basis = [unit(4, (i, j, 1), (2 + j, 2 + i, -1)) for i in range(2) for j in range(2)]
+    for row, column in ((0, 2), (2, 0)):
+        basis += [unit(4, (row, column, 1)), unit(4, (row + 1, column + 1, 1))]
+        basis += [unit(4, (row, column + 1, 1), (row + 1, column, 1))]
+    return basis
+
+
+def affine(n):
+    return [unit(n + 1, (i, j, 1)) for i in range(n) for j in range(n + 1)]
+
+
+def orthogonal(n):
+    return [unit(n, (i, j, -1), (j, i, 1)) for i in range(n) for j in range(i + 1, n)]
+
+
+FORM = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.eye(2), np.zeros((2, 2))]])
+GROUPS = {
+    "SL3": (special_linear(3), lambda g: np.linalg.det(g) - 1),
+    "Sp4": (symplectic(), lambda g: g.T @ FORM @ g - FORM),
+    "SO4": (orthogonal(4), lambda g: g.T @ g - np.eye(4)),
+    "Affine2": (affine(2), lambda g: g[-1] - np.eye(3)[-1]),
+}
+
+
+def body(name):
+    basis, relation = GROUPS[name]
+    n = len(basis[0])
+    text = "(((F - I) * K * (F - I).transpose()).trace() + ((I - inverse(F)) * K * (I - inverse(F)).transpose()).trace()) / (4 * h)"
+    return ls.lagrangian(name, generators=basis, K=np.diag(np.arange(1.0, n + 1)), l_d=text), basis, relation
+
+
+@pytest.mark.parametrize("name", GROUPS)
+def test_order_momentum_and_relation(name):
+    term, basis, relation = body(name)
+    velocity = 0.3 * np.cos(np.arange(1, len(basis) + 1))
+
+    def end(steps, **method):
+        run = term.stepper(1 / steps, **method).run(velocity=velocity, until=1)
+        assert max(abs(relation(g)).max() for g in run.attitude) < 1e-13
+        # Ad*_{g⁻¹} μ: ⟨μ, Ad_{g⁻¹} E_k⟩.
+        dual = np.linalg.pinv(np.array([e.ravel() for e in basis]).T)
+        def spatial(g, momentum):
+            back = np.linalg.inv(g)
+            return np.array([momentum @ (dual @ (back @ e @ g).ravel()) for e in basis])
+        first, last = (spatial(run.attitude[at], run.momentum[at]) for at in (0, -1))
+        assert abs(last - first).max() < 1e-12 * max(1, abs(first).max())
+        return run.attitude[-1]
+
+    for method, order, coarsest in (({}, 2, 40), ({"composition": "Suzuki 4"}, 4, 10)):
+        exact = end(400, composition="Kahan-Li 8")
+        errors = [np.linalg.norm(end(steps, **method) - exact) for steps in (coarsest, 2 * coarsest)]
+        assert abs(np.log2(errors[0] / errors[1]) - order) < 0.1, errors
+
+
+def test_an_accuracy_is_reached():
+    term, basis, _ = body("SL3")
+    velocity = 0.3 * np.cos(np.arange(1, len(basis) + 1))
+    run = term.run(velocity=velocity, until=2)
+    exact = term.stepper(0.005, composition="Kahan-Li 8").run(velocity=velocity, until=2)
+    assert run.error <= 1e-6 and np.linalg.norm(run.attitude[-1] - exact.attitude[-1]) < 1e-5
+
+
+def test_terms_add_and_forces_act():
+    basis = GROUPS["Affine2"][0]
+    term, _, _ = body("Affine2")
+    force = ls.force("Affine2", generators=basis, work="-0.5 * h * c * (eta + eta_next)[0]", c=0.1)
+    run = (term + force).stepper(0.01).run(velocity=np.zeros(6), until=1)
+    assert abs(run.momentum[-1][0] + 0.1) < 0.01 and abs(run.momentum[0]).max() == 0
+
+
+def test_what_is_no_basis_is_refused():
+    for generators in ([1, 2], np.zeros((2, 3, 2)), [unit(3, (0, 1, 1)), unit(3, (1, 2, 1))]):
+        with pytest.raises(ls.DeclarationError):
+            ls.lagrangian("Own", generators=generators, k=1.0, l_d="k * (F - I).trace() / h")
+    term, basis, _ = body("SL3")
+    with pytest.raises(ls.SetupError, match="SO3"):
+        term.stepper(0.01, splitting="Strang")
+    with pytest.raises(ls.SetupError, match="the group"):
+        term.stepper(0.01).run(velocity=np.zeros(8), attitude=2 * np.eye(3), until=1)

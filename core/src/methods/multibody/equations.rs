@@ -1,0 +1,312 @@
+//! The equations of jointed bodies, at one configuration.
+
+use alloc::vec::Vec;
+
+use nalgebra::{Matrix3, Matrix6, Vector2, Vector6};
+
+roots!();
+
+use super::constraint::Place;
+use super::elimination::{Closing, Ends, Node, Unknowns, factorise, solve};
+use super::graph::{Joined, Member, Tree};
+use super::{parts, place_of};
+
+/// The least pivot of a joint that closes a loop and isn't redundant, relative to that between free bodies. The
+/// rounding error of a zero is some `1e-14`. Near a singular configuration a pivot is quadratic in the distance to it,
+/// so this limit is some 3 µrad away. It is also proportional to the ratio of the bodies' masses: ratios of 1e11 are
+/// refused.
+const REDUNDANT: f64 = 1e-11;
+
+/// The least pivot of a joint with independent functions: the rounding error of a zero in a tree, whose pivots are
+/// relative to the joint's own matrix. A point mass on an arm of ten million radii is at the limit.
+const DEPENDENT: f64 = 1e-14;
+
+/// The joint with the widest gap, or with the fastest opening one.
+pub(super) struct Widest {
+    pub(super) joint: usize,
+    /// The norm of its gap, in the units of its functions.
+    pub(super) by: f64,
+    /// The largest value of a function, relative to the size of its terms.
+    pub(super) relative: f64,
+}
+
+/// Matrices, slopes and right-hand sides; after a solution the unknowns.
+#[derive(Clone, Default)]
+pub(super) struct Equations {
+    nodes: Vec<Node>,
+    loops: Vec<Closing>,
+    pub(super) unknowns: Unknowns,
+}
+
+/// The derivative map of an end that a slope is for.
+#[derive(Clone, Copy)]
+enum Side {
+    Before,
+    After,
+}
+
+impl Side {
+    fn of(self, ends: &mut Ends) -> &mut Matrix6<f64> {
+        match self {
+            Self::Before => &mut ends.before,
+            Self::After => &mut ends.after,
+        }
+    }
+}
+
+/// The functions of a joint at these places.
+pub(super) fn gap(joined: &Joined, places: &[Place]) -> Vector6<f64> {
+    joined.functions.gap(place_of(places, joined.above), &places[joined.below])
+}
+
+impl Equations {
+    /// Makes room for these bodies and joints, if the last ones were others. Slopes and matrices aren't set.
+    pub(super) fn fit(&mut self, joints: &[Joined], tree: &Tree) {
+        let rows = |joint: Option<usize>| joint.map_or(0, |joint| joints[joint].functions.rows());
+        let all = [tree.members.len(), tree.loops.len()];
+        let node = |member: &Member| Node::new(rows(member.joint), member.parent.is_some());
+        let bodies = |joint: usize| [Some(joints[joint].below), joints[joint].above];
+        let fits = self.nodes.len() == all[0]
+            && self.loops.len() == all[1]
+            && self.nodes.iter().zip(&tree.members).all(|(one, member)| one.is_like(rows(member.joint), member.parent))
+            && self
+                .loops
+                .iter()
+                .zip(&tree.loops)
+                .all(|(one, &joint)| one.is_like(bodies(joint), rows(Some(joint)), all));
+        if fits {
+            return;
+        }
+        self.nodes.clear();
+        self.nodes.extend(tree.members.iter().map(node));
+        self.loops.clear();
+        self.loops.extend(tree.loops.iter().map(|&joint| Closing::new(bodies(joint), rows(Some(joint)), all)));
+        self.unknowns.bodies.resize(all[0], Vector6::zeros());
+        self.unknowns.joints.resize(all[0], Vector6::zeros());
+        self.unknowns.loops.resize(all[1], Vector6::zeros());
+    }
+
+    /// Sets one of the slopes of all joints at these places, for unknowns that turn the bodies by these maps.
+    fn set(
+        &mut self,
+        joints: &[Joined],
+        tree: &Tree,
+        places: &[Place],
+        side: Side,
+        turn: impl Fn(usize) -> Matrix3<f64>,
+    ) {
+        for (k, (node, member)) in self.nodes.iter_mut().zip(&tree.members).enumerate() {
+            let Some(joint) = member.joint else { continue };
+            let joined = &joints[joint];
+            let (own, other) = (turn(k), member.parent.map(&turn));
+            let [of_own, of_other] = &mut node.ends;
+            let (own, other) = ((Some(&own), side.of(of_own)), (other.as_ref(), side.of(of_other)));
+            let [above, below] = if member.is_below { [other, own] } else { [own, other] };
+            let at = [place_of(places, joined.above), &places[joined.below]];
+            joined.functions.slopes(at, [above.0, below.0], [above.1, below.1]);
+        }
+        for (closing, &joint) in self.loops.iter_mut().zip(&tree.loops) {
+            let joined = &joints[joint];
+            let [below, above] = &mut closing.ends;
+            let (of_above, of_below) = (joined.above.map(&turn), turn(joined.below));
+            let at = [place_of(places, joined.above), &places[joined.below]];
+            joined.functions.slopes(at, [of_above.as_ref(), Some(&of_below)], [side.of(above), side.of(below)]);
+        }
+    }
+
+    /// Sets `E` at these places.
+    pub(super) fn set_before(&mut self, joints: &[Joined], tree: &Tree, places: &[Place]) {
+        self.set(joints, tree, places, Side::Before, |body| places[body].attitude);
+    }
+
+    /// Sets `C` at these places, for unknowns that turn the bodies by these maps.
+    pub(super) fn set_after(&mut self, joints: &[Joined], tree: &Tree, places: &[Place], turns: &[Matrix3<f64>]) {
+        self.set(joints, tree, places, Side::After, |body| turns[body]);
+    }
+
+    /// Sets the equations of velocities at these places, with `C = E`, by the inertias of the bodies.
+    pub(super) fn set_velocities(
+        &mut self,
+        joints: &[Joined],
+        tree: &Tree,
+        places: &[Place],
+        inertias: &[Matrix6<f64>],
+    ) {
+        self.set_before(joints, tree, places);
+        let of_trees = self.nodes.iter_mut().flat_map(|node| &mut node.ends);
+        let ends = of_trees.chain(self.loops.iter_mut().flat_map(|closing| &mut closing.ends));
+        ends.for_each(|ends| ends.after = ends.before);
+        self.factorise(tree, inertias);
+    }
+
+    /// Factorises these matrices of the bodies.
+    pub(super) fn factorise(&mut self, tree: &Tree, matrices: &[Matrix6<f64>]) {
+        for (node, matrix) in self.nodes.iter_mut().zip(matrices) {
+            node.matrix = *matrix;
+        }
+        factorise(tree, &mut self.nodes, &mut self.loops);
+    }
+
+    /// Solves for these residuals of the bodies and gaps of the joints; returns the result of [`solve`].
+    pub(super) fn solve(
+        &mut self,
+        tree: &Tree,
+        residuals: &[Vector6<f64>],
+        gap: impl Fn(usize) -> Vector6<f64>,
+    ) -> Vector2<f64> {
+        self.unknowns.bodies.copy_from_slice(residuals);
+        for (unknown, member) in self.unknowns.joints.iter_mut().zip(&tree.members) {
+            *unknown = member.joint.map_or_else(Vector6::zeros, &gap);
+        }
+        for (unknown, &joint) in self.unknowns.loops.iter_mut().zip(&tree.loops) {
+            *unknown = gap(joint);
+        }
+        solve(tree, &self.nodes, &self.loops, &mut self.unknowns)
+    }
+
+    /// Writes the reactions `Σ Eᵀ p` of each body: the momentum that the multipliers take.
+    pub(super) fn reactions(&self, tree: &Tree, reactions: &mut [Vector6<f64>]) {
+        reactions.fill(Vector6::zeros());
+        for (k, (node, member)) in self.nodes.iter().zip(&tree.members).enumerate() {
+            if member.joint.is_none() {
+                continue;
+            }
+            let [own, of_parent] = &node.ends;
+            reactions[k] += own.momentum(&self.unknowns.joints[k]);
+            if let Some(parent) = member.parent {
+                reactions[parent] += of_parent.momentum(&self.unknowns.joints[k]);
+            }
+        }
+        for (closing, multiplier) in self.loops.iter().zip(&self.unknowns.loops) {
+            closing.ends().for_each(|(body, ends)| reactions[body] += ends.momentum(multiplier));
+        }
+    }
+
+    /// Adds the multipliers of all joints, each with this factor, by their numbers.
+    pub(super) fn add_multipliers(&self, tree: &Tree, factor: f64, forces: &mut [Vector6<f64>]) {
+        for (member, multiplier) in tree.members.iter().zip(&self.unknowns.joints) {
+            if let Some(joint) = member.joint {
+                forces[joint] += multiplier * factor;
+            }
+        }
+        for (&joint, multiplier) in tree.loops.iter().zip(&self.unknowns.loops) {
+            forces[joint] += multiplier * factor;
+        }
+    }
+
+    /// The joint with the widest gap; `lengths` are the bodies' radii of gyration, m.
+    pub(super) fn widest_gap(&self, joints: &[Joined], tree: &Tree, places: &[Place], lengths: &[f64]) -> Widest {
+        let shift = |body: usize| lengths[body].max(places[body].position.norm());
+        self.widest(tree, 1.0, shift, |joint, _| gap(&joints[joint], places))
+    }
+
+    /// The joint that these velocities open fastest, by `E y`; turns slower than `least`, rad/s, count as zero.
+    pub(super) fn widest_parting(
+        &self,
+        tree: &Tree,
+        velocities: &[Vector6<f64>],
+        lengths: &[f64],
+        least: f64,
+    ) -> Widest {
+        let largest = |of: fn(&Vector6<f64>) -> f64| velocities.iter().map(of).fold(0.0, f64::max);
+        let turn = largest(|velocity| parts(velocity).0.norm()).max(least);
+        let speed = largest(|velocity| parts(velocity).1.norm());
+        self.widest(
+            tree,
+            turn,
+            |body| speed.max(lengths[body] * turn),
+            |_, ends| {
+                ends.iter().fold(Vector6::zeros(), |sum, &(body, ends)| sum + ends.before.tr_mul(&velocities[body]))
+            },
+        )
+    }
+
+    /// The widest gap among these values of the functions, each relative to the size of its own terms.
+    fn widest(
+        &self,
+        tree: &Tree,
+        turn: f64,
+        shift: impl Fn(usize) -> f64,
+        values: impl Fn(usize, &[(usize, &Ends)]) -> Vector6<f64>,
+    ) -> Widest {
+        let mut widest = Widest { joint: 0, by: 0.0, relative: 0.0 };
+        let mut compare = |joint: usize, bodies: [Option<usize>; 2], both: &[Ends; 2]| {
+            let [own, other] = [0, 1].map(|side| bodies[side].map(|body| (body, &both[side])));
+            let of = |ends: &[(usize, &Ends)]| {
+                let sizes =
+                    ends.iter().fold(Vector6::<f64>::zeros(), |sum, &(body, ends)| sum + ends.sizes(turn, shift(body)));
+                (values(joint, ends), sizes)
+            };
+            let (values, sizes) = match [own.or(other), own.and(other)] {
+                [Some(one), Some(other)] => of(&[one, other]),
+                [Some(one), None] => of(&[one]),
+                _ => return,
+            };
+            for (value, size) in values.iter().zip(&sizes) {
+                let relative = if *value == 0.0 { 0.0 } else { value.abs() / size };
+                // A NaN counts as the widest gap.
+                if !(relative <= widest.relative || widest.relative.is_nan()) {
+                    widest = Widest { joint, by: values.norm(), relative };
+                }
+            }
+        };
+        for (k, (node, member)) in self.nodes.iter().zip(&tree.members).enumerate() {
+            if let Some(joint) = member.joint {
+                compare(joint, [Some(k), member.parent], &node.ends);
+            }
+        }
+        for (closing, &joint) in self.loops.iter().zip(&tree.loops) {
+            compare(joint, closing.bodies, &closing.ends);
+        }
+        widest
+    }
+
+    /// The largest distance of a body from the origin, or of a joint's points from their body, m. The rounding errors
+    /// of positions are relative to this length.
+    pub(super) fn extent(&self, places: &[Place]) -> f64 {
+        let of_bodies = self.nodes.iter().flat_map(|node| &node.ends);
+        let arms = of_bodies.chain(self.loops.iter().flat_map(|closing| &closing.ends)).map(Ends::squared_arm);
+        places.iter().map(|place| place.position.norm_squared()).chain(arms).fold(0.0, f64::max).sqrt()
+    }
+
+    /// The first body whose pivot block has a determinant of the wrong sign.
+    pub(super) fn wrong_body(&self) -> Option<usize> {
+        // A NaN counts as the wrong sign.
+        let is_right = |node: &Node| node.determinant > 0.0;
+        self.nodes.iter().position(|node| !is_right(node))
+    }
+
+    pub(super) fn determinant(&self, body: usize) -> f64 {
+        self.nodes[body].determinant
+    }
+
+    /// The determinant of the whole system, relative to its diagonal, if its sign is wrong while those of the bodies
+    /// are positive. Along the branch that continues rest it never vanishes, so a solution with a changed sign is on
+    /// another branch; a strut, for example, has a solution on either side. The signs of single joints may change, and
+    /// which ones do depends on the choice of the joints that close loops; the sign of the whole doesn't.
+    pub(super) fn reversed(&self) -> Option<f64> {
+        let of_trees = self.nodes.iter().map(|node| node.of_joint);
+        let of_joints = of_trees.chain(self.loops.iter().map(|closing| closing.of_joint));
+        // The product of signs can't underflow as the product of the determinants could.
+        let sign = |determinant: f64| if determinant == 0.0 { 0.0 } else { determinant.signum() };
+        // A NaN counts as the wrong sign.
+        let is_right = of_joints.clone().map(sign).product::<f64>() > 0.0;
+        let of_bodies = self.nodes.iter().map(|node| node.determinant);
+        if is_right { None } else { Some(of_bodies.chain(of_joints).product()) }
+    }
+
+    /// The first joint with dependent functions, or that is redundant beside the others: its number, and its pivot
+    /// relative to that between free bodies.
+    pub(super) fn redundant(&self, tree: &Tree) -> Option<(usize, f64)> {
+        // Far from rest a pivot of the tree may be negative, as the matrix isn't symmetric. A NaN counts as zero.
+        let has_rank = |node: &Node| node.pivot.abs() > DEPENDENT;
+        for (node, member) in self.nodes.iter().zip(&tree.members) {
+            if let (Some(joint), false) = (member.joint, has_rank(node)) {
+                return Some((joint, node.pivot));
+            }
+        }
+        let has_something = |closing: &Closing| closing.pivot > REDUNDANT;
+        let place = self.loops.iter().position(|closing| !has_something(closing))?;
+        Some((tree.loops[place], self.loops[place].pivot))
+    }
+}

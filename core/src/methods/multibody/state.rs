@@ -1,0 +1,146 @@
+//! The numbers of a state: attitudes, momenta, the memory for the next guess, and the number of steps.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use nalgebra::{Matrix3, Matrix4, Vector6};
+
+use super::Body;
+use crate::groups::{R3, SO3};
+use crate::motion::{Factor, FactorKind, Layout};
+
+/// The entries of an attitude: a rotation and a translation.
+const ATTITUDE: usize = 9 + 16;
+
+/// The number of backward differences of increments, from which the next one is guessed. Eight increments at equal
+/// times predict the next to some `(h ω)⁸` for their fastest frequency `ω`; each further one would double the rounding
+/// in the guess.
+const DIFFERENCES: usize = 7;
+
+/// The layout of the states of a number of bodies.
+pub(super) fn layout(bodies: usize) -> Layout {
+    let of_body = |body: usize| {
+        let kinds = [FactorKind::Rotation, FactorKind::Translation(4)];
+        (1..).zip(kinds).map(move |(place, kind)| Factor::of(kind, 3).at(2 * body + place))
+    };
+    let memory = 6 * bodies * (2 + DIFFERENCES) + 1;
+    Layout { factors: (0..bodies).flat_map(of_body).collect(), advected: Vec::new(), memory }
+}
+
+/// The places of a state's numbers.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Offsets {
+    bodies: usize,
+}
+
+impl Offsets {
+    pub(super) fn of(bodies: usize) -> Self {
+        Self { bodies }
+    }
+
+    /// The number of entries.
+    pub(super) fn length(self) -> usize {
+        self.memory().end + 1
+    }
+
+    /// The number of entries of all attitudes.
+    pub(super) fn attitudes(self) -> usize {
+        ATTITUDE * self.bodies
+    }
+
+    fn memory(self) -> Range<usize> {
+        let start = (ATTITUDE + 6) * self.bodies;
+        start..start + 6 * self.bodies * (2 + DIFFERENCES) + 1
+    }
+
+    /// A state of zeros.
+    pub(super) fn zeros(self) -> Vec<f64> {
+        vec![0.0; self.length()]
+    }
+
+    pub(super) fn momentum(self, state: &[f64], body: usize) -> Vector6<f64> {
+        Vector6::from_column_slice(&state[self.attitudes() + 6 * body..][..6])
+    }
+
+    pub(super) fn write(self, state: &mut [f64], bodies: &[Body], momenta: &[Vector6<f64>]) {
+        for (entries, body) in state.chunks_mut(ATTITUDE).zip(bodies) {
+            write_body(entries, body);
+        }
+        self.write_momenta(state, momenta);
+    }
+
+    pub(super) fn write_momenta(self, state: &mut [f64], momenta: &[Vector6<f64>]) {
+        for (entries, momentum) in state[self.attitudes()..].chunks_mut(6).zip(momenta) {
+            entries.copy_from_slice(momentum.as_slice());
+        }
+    }
+
+    /// The guess of a body's half increment.
+    pub(super) fn guess(self, state: &[f64], body: usize) -> Vector6<f64> {
+        Vector6::from_column_slice(&state[self.memory().start + 6 * (self.bodies + body)..][..6])
+    }
+
+    /// The memory before the first step, from an estimate of the half increments.
+    pub(super) fn begin(self, state: &mut [f64], halves: &[Vector6<f64>]) {
+        let memory = &mut state[self.memory()];
+        memory.fill(0.0);
+        for both in memory.chunks_mut(6 * self.bodies).take(2) {
+            for (entries, half) in both.chunks_mut(6).zip(halves) {
+                entries.copy_from_slice(half.as_slice());
+            }
+        }
+    }
+
+    /// Extrapolates the guess, by the polynomial through the last increments: the value `y + ∇ y + ∇² y + …`. If an
+    /// increment is `far` from the identity, it is the guess itself. The estimate before the first step isn't used.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // a few
+    pub(super) fn follow(self, state: &mut [f64], halves: &[Vector6<f64>], is_far: bool) {
+        let (is_first, all) = (self.steps(state) == 0.0, 6 * self.bodies);
+        let memory = &mut state[self.memory()];
+        let known = memory.last().map_or(0, |known| (*known as usize).min(DIFFERENCES + 1));
+        for (k, &half) in halves.iter().flat_map(|half| half.iter()).enumerate() {
+            let (mut difference, mut guess) = (half - memory[k], half);
+            for number in 0..known.min(DIFFERENCES) {
+                guess += difference;
+                let before = core::mem::replace(&mut memory[all * (2 + number) + k], difference);
+                difference -= before;
+            }
+            memory[k] = half;
+            memory[all + k] = if is_far || is_first { half } else { guess };
+        }
+        if let Some(last) = memory.last_mut() {
+            *last = (known + 1).min(DIFFERENCES + 1) as f64;
+        }
+    }
+
+    /// The number of steps, a whole one.
+    pub(super) fn steps(self, state: &[f64]) -> f64 {
+        state[self.length() - 1]
+    }
+
+    pub(super) fn set_steps(self, state: &mut [f64], steps: f64) {
+        state[self.length() - 1] = steps;
+    }
+}
+
+/// The configuration of a body of a state.
+pub(super) fn body_at(state: &[f64], body: usize) -> Body {
+    body_of(&state[ATTITUDE * body..])
+}
+
+/// A body by the entries of its matrices, row by row.
+pub(super) fn body_of(entries: &[f64]) -> Body {
+    let attitude = SO3::from_matrix_unchecked(Matrix3::from_row_slice(&entries[..9]));
+    (attitude, R3::from_matrix_unchecked(Matrix4::from_row_slice(&entries[9..ATTITUDE])))
+}
+
+/// Writes the entries of a body's matrices, row by row.
+pub(super) fn write_body(entries: &mut [f64], body: &Body) {
+    for (entry, value) in entries.iter_mut().zip(body.0.as_matrix().transpose().iter()) {
+        *entry = *value;
+    }
+    for (entry, value) in entries[9..].iter_mut().zip(body.1.as_matrix().transpose().iter()) {
+        *entry = *value;
+    }
+}

@@ -1,0 +1,213 @@
+//! The step of a system of bodies.
+
+use nalgebra::Vector6;
+
+use super::constraint::Place;
+use super::equations::Equations;
+use super::newton::Problem;
+use super::state::body_at;
+use super::stepper::MultibodyStepper;
+use super::terms::space;
+use super::workspace::{Workspace, with_workspace};
+use super::{Body, place};
+use crate::error::StepError;
+use crate::groups::{CayleyRetraction, LieGroup as _, Retraction};
+use crate::motion::StepReport;
+
+/// The number of steps between two projections of attitudes onto the rotations. Internal forces cancel only as far as
+/// attitudes are rotations; otherwise the total momentum drifts in proportion to the steps.
+const STEPS_BETWEEN_CHECKS: f64 = 64.0;
+
+impl MultibodyStepper {
+    /// Makes one step of a slice that is a state; on an error it is unchanged. Adds the joints' forces.
+    pub(super) fn step_in(
+        &self,
+        state: &mut [f64],
+        work: &mut Workspace,
+        forces: Option<&mut [Vector6<f64>]>,
+    ) -> Result<StepReport, StepError> {
+        let (offsets, steps) = (self.offsets, self.offsets.steps(state));
+        if self.h == 0.0 {
+            offsets.set_steps(state, steps + 1.0);
+            return Ok(StepReport::of(0));
+        }
+        work.fit(self.bodies());
+        work.equations.fit(self.joints(), &self.tree);
+        self.load(state, work, steps)?;
+        self.kick_before(work);
+        work.equations.set_before(self.joints(), &self.tree, &work.places);
+        let mut problem = Problem::new(self, work);
+        let iterations = problem.solve()?;
+        problem.set_next();
+        let impulse = -2.0 / self.h;
+        let mut forces = forces;
+        if let Some(forces) = &mut forces {
+            work.equations.add_multipliers(&self.tree, impulse / self.h, forces);
+        }
+        self.push_forward(work, impulse);
+        // The Jacobian was checked along the iteration, but not at its end; the projection checks it there.
+        self.project(work).map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
+        if let Some(forces) = &mut forces {
+            work.equations.add_multipliers(&self.tree, -1.0 / self.h, forces);
+        }
+        let is_finite = |vectors: &[Vector6<f64>]| vectors.iter().flat_map(|v| v.iter()).all(|part| part.is_finite());
+        if !is_finite(&work.momenta) || !is_finite(&work.half) {
+            return Err(StepError::NonFinite { what: "momentum after the step" });
+        }
+        offsets.write(state, &work.next, &work.momenta);
+        let is_near = |half: &Vector6<f64>| <CayleyRetraction as Retraction<Body>>::is_half_well_near_identity(half);
+        offsets.follow(state, &work.half, !work.half.iter().all(is_near));
+        offsets.set_steps(state, steps + 1.0);
+        Ok(StepReport::of(iterations))
+    }
+
+    /// Reads a state. Attitudes are projected onto the rotations if that is due: before the step, so that joints are
+    /// closed after it.
+    fn load(&self, state: &[f64], work: &mut Workspace, steps: f64) -> Result<(), StepError> {
+        let is_due = steps % STEPS_BETWEEN_CHECKS == 0.0;
+        for body in 0..self.bodies() {
+            let now = body_at(state, body);
+            let restored = if is_due { now.restored(0.0) } else { None };
+            work.now[body] = restored.map_or(now, |(restored, _)| restored);
+            work.places[body] = place(&work.now[body]);
+            work.momenta[body] = self.offsets.momentum(state, body);
+            work.half[body] = self.offsets.guess(state, body);
+        }
+        if work.momenta.iter().flat_map(|momentum| momentum.iter()).all(|part| part.is_finite()) {
+            Ok(())
+        } else {
+            Err(StepError::NonFinite { what: "momentum" })
+        }
+    }
+
+    /// The kicks before the step, and the right-hand sides.
+    fn kick_before(&self, work: &mut Workspace) {
+        let Workspace { now, kicks, between, momenta, a, .. } = work;
+        let space = space();
+        self.kick(
+            kicks,
+            between,
+            |term, body| term.kick_before(&now[body]),
+            |pair| self.system.pairs[pair].1.kick_before(self.ends(pair, now, &space)),
+        );
+        for ((a, momentum), kick) in a.iter_mut().zip(&*momenta).zip(&*kicks) {
+            *a = momentum + kick;
+        }
+    }
+
+    /// Moves the bodies by the solution, and their momenta, but for the projection.
+    fn push_forward(&self, work: &mut Workspace, impulse: f64) {
+        work.equations.reactions(&self.tree, &mut work.reactions);
+        for body in 0..self.bodies() {
+            work.increments[body] = <CayleyRetraction as Retraction<Body>>::increment_of_half(&work.half[body]);
+            work.next[body] = work.now[body].advance(&work.increments[body]);
+            work.reactions[body] *= impulse;
+        }
+        // The changes of the momenta are in the place of the right-hand sides.
+        for body in 0..self.bodies() {
+            let (kick, of_joints) = (work.kicks[body], work.reactions[body]);
+            let turned = Body::adjoint_transpose_increment(&work.increments[body], &(work.a[body] + of_joints));
+            work.a[body] = turned + (kick + of_joints);
+        }
+        let Workspace { next, increments, kicks, between, a, .. } = work;
+        let space = space();
+        let rest = space.increment();
+        self.kick(
+            kicks,
+            between,
+            |term, body| term.kick_after(&increments[body], &next[body]),
+            |pair| {
+                let (bodies, term) = &self.system.pairs[pair];
+                let increments = bodies.map(|body| body.map_or(&rest, |body| &increments[body]));
+                term.kick_after(increments, self.ends(pair, next, &space))
+            },
+        );
+        for (change, kick) in a.iter_mut().zip(&*kicks) {
+            *change += kick;
+        }
+    }
+
+    /// Projects the momenta after the changes in `a` onto those whose velocities satisfy the constraints at the next
+    /// configuration. If the impulses aren't unique, the joint that is redundant, and its pivot.
+    fn project(&self, work: &mut Workspace) -> Result<(), (usize, f64)> {
+        let Workspace { next, next_places, momenta, a, residuals, matrices, reactions, equations, .. } = work;
+        for body in 0..self.bodies() {
+            next_places[body] = place(&next[body]);
+            residuals[body] = momenta[body] + a[body];
+        }
+        self.set_impulses(equations, next, next_places, (residuals, matrices))?;
+        equations.reactions(&self.tree, reactions);
+        for body in 0..self.bodies() {
+            a[body] -= reactions[body];
+            momenta[body] += a[body];
+        }
+        Ok(())
+    }
+
+    /// Solves for the impulses of the joints that project these momenta onto those whose velocities satisfy the
+    /// constraints, at the least distance in the metric of the inertia; the momenta are overwritten by residuals.
+    pub(super) fn set_impulses(
+        &self,
+        equations: &mut Equations,
+        bodies: &[Body],
+        places: &[Place],
+        (momenta, inertias): (&mut [Vector6<f64>], &mut [nalgebra::Matrix6<f64>]),
+    ) -> Result<(), (usize, f64)> {
+        for (body, momentum) in momenta.iter_mut().enumerate() {
+            let (_, bias, inertia) = self.at_rest(body, &bodies[body]);
+            inertias[body] = inertia;
+            *momentum = bias - *momentum;
+        }
+        equations.set_velocities(self.joints(), &self.tree, places, inertias);
+        if let Some(redundant) = equations.redundant(&self.tree) {
+            return Err(redundant);
+        }
+        equations.solve(&self.tree, momenta, |_| Vector6::zeros());
+        Ok(())
+    }
+
+    /// Makes one step under a force on each body, `(N m, N)`, in its own axes and in those of space: half of its impulse
+    /// at either end of the step. Joints take up the part that would open them; on an error the state is unchanged.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError::NonFinite`] for a force that isn't finite or isn't that of all bodies; otherwise the errors of
+    /// [`step`](Self::step).
+    pub fn step_forced(&self, state: &mut [f64], force: &[Vector6<f64>]) -> Result<StepReport, StepError> {
+        self.check(state)?;
+        if force.len() != self.bodies() || !force.iter().flat_map(|part| part.iter()).all(|part| part.is_finite()) {
+            return Err(StepError::NonFinite { what: "control force" });
+        }
+        with_workspace(|work| {
+            let mut next = core::mem::take(&mut work.before);
+            next.clear();
+            next.extend_from_slice(state);
+            let made = self
+                .push(&mut next, work, force)
+                .and_then(|()| self.step_in(&mut next, work, None))
+                .and_then(|report| self.push(&mut next, work, force).map(|()| report));
+            if made.is_ok() {
+                state.copy_from_slice(&next);
+            }
+            work.before = next;
+            made
+        })
+    }
+
+    /// Adds half of a step's impulse of these forces.
+    fn push(&self, state: &mut [f64], work: &mut Workspace, force: &[Vector6<f64>]) -> Result<(), StepError> {
+        work.fit(self.bodies());
+        work.equations.fit(self.joints(), &self.tree);
+        for (body, force) in force.iter().enumerate() {
+            work.next[body] = body_at(state, body);
+            work.momenta[body] = self.offsets.momentum(state, body);
+            work.a[body] = force * (self.h * 0.5);
+        }
+        self.project(work).map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
+        if !work.momenta.iter().flat_map(|momentum| momentum.iter()).all(|part| part.is_finite()) {
+            return Err(StepError::NonFinite { what: "momentum after the step" });
+        }
+        self.offsets.write_momenta(state, &work.momenta);
+        Ok(())
+    }
+}

@@ -1,0 +1,539 @@
+//! The stepper of a system of bodies.
+
+use alloc::boxed::Box;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+use nalgebra::{Matrix6, Vector6};
+
+roots!();
+
+use super::constraint::Place;
+use super::equations::gap;
+use super::graph::{Joined, Tree};
+use super::state::{Offsets, body_at, body_of, layout};
+use super::system::{Multibody, ends};
+use super::terms::{BodyTerm, space};
+use super::workspace::with_workspace;
+use super::{Body, place};
+use crate::error::{SetupError, StepError};
+use crate::groups::LieGroup as _;
+use crate::mechanics::{SceneVisitor, check_inertia};
+use crate::motion::{Layout, Propagator, StepReport};
+use crate::numbers::{BlockDiagonal, Coordinates as _, Pattern};
+
+/// The stepper of a [`Multibody`] system: a [`Propagator`] whose states are slices of numbers.
+///
+/// # Contract
+///
+/// - Gaps of joints stay at rounding, some units in the last place of the distances from the origin.
+/// - Velocities satisfy the constraints as well: energies and momenta of a state are those of the jointed system.
+/// - A step satisfies its equations to rounding, or is an error, mostly of a body or a joint, and leaves the state as it
+///   was.
+/// - A step turns each body by less than a right angle, whatever its kinetic term; one that would turn a body farther is
+///   [`StepError::UnsolvedBody`].
+/// - Nothing is allocated after a thread's first step of a system of this size.
+///
+/// A state has the attitudes of all bodies, each a rotation and a translation, then their momenta, the memory for the
+/// guess of the next increments, and the number of steps.
+///
+/// # Source
+///
+/// The step (2.7) of \[RDAE\] with the multipliers of constrained variational integrators, \[MW01\], section 3: SHAKE in
+/// positions, RATTLE in momenta.
+#[derive(Clone)]
+pub struct MultibodyStepper {
+    pub(super) h: f64,
+    /// With its terms in the order of their bodies.
+    pub(super) system: Multibody,
+    /// The terms of each body.
+    ranges: Vec<Range<usize>>,
+    pub(super) tree: Tree,
+    /// The radius of gyration of each body, m, by which rotations are compared with translations.
+    pub(super) lengths: Vec<f64>,
+    layout: Layout,
+    pub(super) offsets: Offsets,
+}
+
+impl core::fmt::Debug for MultibodyStepper {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let (bodies, joints) = (self.bodies(), self.joints().len());
+        let mut debug = f.debug_struct("MultibodyStepper");
+        debug.field("h", &self.h).field("bodies", &bodies).field("joints", &joints).finish_non_exhaustive()
+    }
+}
+
+impl MultibodyStepper {
+    /// The stepper of a system whose parameters are valid.
+    pub(super) fn of(mut system: Multibody, h: f64) -> Result<Self, SetupError> {
+        // 1/h and the constants that depend on it must be finite, unless h is zero.
+        if !h.is_finite() || !(h == 0.0 || (1.0 / h).is_finite()) {
+            return Err(SetupError::InvalidStep { step: h });
+        }
+        // Stable, so that the terms of a body are added in their own order.
+        system.terms.sort_by_key(|(body, _)| *body);
+        let tree = Tree::of(&system.joints, system.bodies)?;
+        let place = |body: usize| system.terms.partition_point(|(of, _)| *of < body);
+        let ranges = (0..system.bodies).map(|body| place(body)..place(body + 1)).collect();
+        let (layout, offsets) = (layout(system.bodies), Offsets::of(system.bodies));
+        let mut stepper = Self { h, system, ranges, tree, lengths: Vec::new(), layout, offsets };
+        stepper.check_inertias(|_| space())?;
+        stepper.lengths = (0..stepper.bodies()).map(|body| length(&stepper.at_rest(body, &space()).2)).collect();
+        // Some constants aren't finite for any step.
+        if h != 0.0 && !stepper.system.refolded(h).is_finite() && !stepper.system.is_finite() {
+            return Err(SetupError::NonFiniteConstant);
+        }
+        if h != 0.0 {
+            stepper.system = stepper.system.refolded(h);
+            let zero = Vector6::zeros();
+            let of_body = |body| stepper.newton_system(body, &space(), &zero, &zero).1.trace();
+            let trace: f64 = (0..stepper.bodies()).map(of_body).sum();
+            if !(trace / h).is_finite() {
+                return Err(SetupError::InvalidStep { step: h });
+            }
+        }
+        Ok(stepper)
+    }
+
+    /// Checks the inertias of the bodies at these configurations.
+    pub(super) fn check_inertias(&self, at: impl Fn(usize) -> Body) -> Result<(), SetupError> {
+        (0..self.bodies()).try_for_each(|body| {
+            let inertia = BlockDiagonal([self.at_rest(body, &at(body)).2]);
+            let of_body = (self.bodies() > 1).then_some(body);
+            check_inertia::<[Body; 1]>(&inertia).map_err(|error| match error {
+                SetupError::NegativeKinetic { pivot, .. } => SetupError::NegativeKinetic { pivot, body: of_body },
+                SetupError::SingularKinetic { determinant, .. } => {
+                    SetupError::SingularKinetic { determinant, body: of_body }
+                }
+                error => error,
+            })
+        })
+    }
+
+    /// The number of bodies.
+    #[must_use]
+    pub fn bodies(&self) -> usize {
+        self.system.bodies
+    }
+
+    pub(super) fn joints(&self) -> &[Joined] {
+        &self.system.joints
+    }
+
+    fn terms(&self, body: usize) -> impl Iterator<Item = &dyn BodyTerm> {
+        self.system.terms[self.ranges[body].clone()].iter().map(|(_, term)| &**term)
+    }
+
+    /// The declaration of each term and all derived equations, as text.
+    #[must_use]
+    pub fn derivation(&self) -> String {
+        self.system.derivation()
+    }
+
+    /// Visits the derivations, parameters and places of all terms and joints. Two steppers with the same description and
+    /// the same step make the same steps.
+    pub fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
+        #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
+        let number = |body: Option<usize>| body.map_or(-1.0, |body| body as f64);
+        visitor.term("bodies with joints");
+        visitor.parameter("bodies", number(Some(self.bodies())));
+        for (body, term) in &self.system.terms {
+            visitor.term("on a body");
+            visitor.parameter("body", number(Some(*body)));
+            term.describe(visitor);
+        }
+        for (bodies, term) in &self.system.pairs {
+            visitor.term("between two bodies");
+            for &body in bodies {
+                visitor.parameter("body", number(body));
+            }
+            term.describe(visitor);
+        }
+        for joined in self.joints() {
+            visitor.term(joined.functions.name());
+            visitor.parameter("body above", number(joined.above));
+            visitor.parameter("body below", number(Some(joined.below)));
+            joined.functions.describe(&mut |name, value| visitor.parameter(name, value));
+        }
+    }
+
+    /// The step `h`, s.
+    #[must_use]
+    pub fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    /// The Lagrangian, the momentum and the inertia of a body's limit at rest.
+    pub(super) fn at_rest(&self, body: usize, now: &Body) -> (f64, Vector6<f64>, Matrix6<f64>) {
+        let mut sum = (0.0, Vector6::zeros(), Matrix6::zeros());
+        for term in self.terms(body) {
+            let (l, momentum, inertia) = term.at_rest(now);
+            sum = (sum.0 + l, sum.1 + momentum, sum.2 + inertia);
+        }
+        sum
+    }
+
+    /// Residual and Jacobian of a body's momentum equation.
+    pub(super) fn newton_system(
+        &self,
+        body: usize,
+        now: &Body,
+        a: &Vector6<f64>,
+        half: &Vector6<f64>,
+    ) -> (Vector6<f64>, Matrix6<f64>) {
+        let (mut sum, mut a) = ((Vector6::zeros(), Matrix6::zeros()), *a);
+        for term in self.terms(body).filter(|term| term.has_unknown()) {
+            let (residual, matrix) = term.newton_system(now, &a, half);
+            sum = (sum.0 + residual, sum.1 + matrix);
+            a = term.remainder(&a);
+        }
+        sum
+    }
+
+    /// The residual of a body's momentum equation.
+    pub(super) fn newton_residual(
+        &self,
+        body: usize,
+        now: &Body,
+        a: &Vector6<f64>,
+        half: &Vector6<f64>,
+    ) -> Vector6<f64> {
+        let (mut sum, mut a) = (Vector6::zeros(), *a);
+        for term in self.terms(body).filter(|term| term.has_unknown()) {
+            sum += term.newton_residual(now, &a, half);
+            a = term.remainder(&a);
+        }
+        sum
+    }
+
+    /// The velocity of a momentum.
+    pub(super) fn velocity_of(&self, body: usize, now: &Body, momentum: &Vector6<f64>) -> Vector6<f64> {
+        let (_, bias, inertia) = self.at_rest(body, now);
+        let factors = Vector6::factorise_apart(&inertia, Pattern::WHOLE).0;
+        Vector6::solve_apart(&factors, Pattern::WHOLE, &(momentum - bias))
+    }
+
+    /// Writes approximately half the coordinates of the increments at these momenta.
+    pub(super) fn estimate(&self, bodies: &[Body], momenta: &[Vector6<f64>], halves: &mut [Vector6<f64>]) {
+        for (body, half) in halves.iter_mut().enumerate() {
+            *half = self.velocity_of(body, &bodies[body], &momenta[body]) * (self.h * 0.5);
+        }
+    }
+
+    /// The configurations of a state.
+    pub(super) fn attitudes(&self, state: &[f64]) -> Vec<Body> {
+        (0..self.bodies()).map(|body| body_at(state, body)).collect()
+    }
+
+    /// The configuration of a body, as attitude and position.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such body, or if the slice is no state of this [`layout`](Propagator::layout).
+    #[must_use]
+    pub fn attitude(&self, state: &[f64], body: usize) -> Body {
+        body_at(state, body)
+    }
+
+    /// The momentum of a body in its own axes, its linear momentum in those of space.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such body, or if the slice is no state of this [`layout`](Propagator::layout).
+    #[must_use]
+    pub fn momentum(&self, state: &[f64], body: usize) -> Vector6<f64> {
+        self.offsets.momentum(state, body)
+    }
+
+    /// The velocity of a body, rad/s in its own axes and m/s in those of space.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such body, or if the slice is no state of this [`layout`](Propagator::layout).
+    #[must_use]
+    pub fn velocity(&self, state: &[f64], body: usize) -> Vector6<f64> {
+        self.velocity_of(body, &self.attitude(state, body), &self.momentum(state, body))
+    }
+
+    /// The energy `½ ξ·Jξ + V`, J; NaN if the slice is no state of this layout.
+    #[must_use]
+    pub fn energy(&self, state: &[f64]) -> f64 {
+        if self.check(state).is_err() {
+            return f64::NAN;
+        }
+        let (mut kinetic, mut l) = (0.0, 0.0);
+        for body in 0..self.bodies() {
+            let now = self.attitude(state, body);
+            let velocity = self.velocity_of(body, &now, &self.momentum(state, body));
+            let (of_body, _, inertia) = self.at_rest(body, &now);
+            kinetic += velocity.dot(&(inertia * velocity));
+            l += of_body;
+        }
+        let space = space();
+        let end = |body: Option<usize>| body.map_or(space, |body| self.attitude(state, body));
+        let of_pair = |bodies: &[Option<usize>; 2]| bodies.map(end);
+        let between = self.system.pairs.iter().map(|(bodies, term)| {
+            let [one, other] = of_pair(bodies);
+            term.potential([&one, &other])
+        });
+        let between = between.fold(0.0, |sum, potential| sum + potential);
+        kinetic * 0.5 + (between - l)
+    }
+
+    /// The widest gap of a joint, m; for a [`PinJoint`](crate::methods::PinJoint) the norm includes the cosines of its
+    /// axes.
+    #[must_use]
+    pub fn widest_gap(&self, state: &[f64]) -> f64 {
+        if self.check(state).is_err() {
+            return f64::NAN;
+        }
+        let places: Vec<Place> = (0..self.bodies()).map(|body| place(&self.attitude(state, body))).collect();
+        self.largest_gap(&places).1
+    }
+
+    /// The joint with the largest gap, in the units of its functions.
+    pub(super) fn largest_gap(&self, places: &[Place]) -> (usize, f64) {
+        let gaps = self.joints().iter().enumerate().map(|(joint, joined)| (joint, gap(joined, places).norm()));
+        // A NaN counts as the widest gap.
+        gaps.fold((0, 0.0), |widest, gap| if gap.1 <= widest.1 { widest } else { gap })
+    }
+
+    /// Adds the kicks of all terms before or after a step.
+    pub(super) fn kick(
+        &self,
+        kicks: &mut [Vector6<f64>],
+        between: &mut [Vector6<f64>],
+        of_body: impl Fn(&dyn BodyTerm, usize) -> Option<Vector6<f64>>,
+        of_pair: impl Fn(usize) -> Option<[Vector6<f64>; 2]>,
+    ) {
+        for (body, kick) in kicks.iter_mut().enumerate() {
+            let parts = self.terms(body).filter_map(|term| of_body(term, body));
+            *kick = parts.reduce(|sum, part| sum + part).unwrap_or_else(Vector6::zeros);
+        }
+        if self.system.pairs.is_empty() {
+            return;
+        }
+        between.fill(Vector6::zeros());
+        for (number, (bodies, _)) in self.system.pairs.iter().enumerate() {
+            let Some(both) = of_pair(number) else { continue };
+            for (body, part) in bodies.iter().zip(both) {
+                if let Some(body) = *body {
+                    between[body] += part;
+                }
+            }
+        }
+        for (kick, between) in kicks.iter_mut().zip(&*between) {
+            *kick += between;
+        }
+    }
+
+    /// Checks that a slice is a state.
+    pub(super) fn check(&self, state: &[f64]) -> Result<(), StepError> {
+        if state.len() == self.offsets.length() {
+            Ok(())
+        } else {
+            Err(StepError::NonFinite { what: "state of this layout" })
+        }
+    }
+
+    /// The forces of the joints in the step from this state: the multipliers of their functions, N for lengths and N m for
+    /// cosines, the mean over the step. Each acts on the body below along the gradient of its function, and is followed
+    /// by zeros up to six.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`](Propagator::step).
+    ///
+    /// # Examples
+    ///
+    /// A body of one kilogram hangs on a pivot.
+    ///
+    /// ```
+    /// use liestep::groups::{LieGroup as _, R3};
+    /// use liestep::methods::{BallJoint, Multibody};
+    /// use liestep::{NonstandardInertia, SO3, lagrangian};
+    /// use nalgebra::{Vector3, Vector6};
+    ///
+    /// #[lagrangian(
+    ///     group(F = SO3, d = R3),
+    ///     advected(x = d.seen_from(space)),
+    ///     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+    ///         - 0.5 * h * m * g * (x + x + d)[2],
+    /// )]
+    /// struct Heavy {
+    ///     J_d: NonstandardInertia,
+    ///     m: f64,
+    ///     g: f64,
+    /// }
+    ///
+    /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(0.1, 0.2, 0.25))?;
+    /// let mut system = Multibody::new();
+    /// let body = system.body(Heavy { J_d, m: 1.0, g: 9.81 });
+    /// system.join(BallJoint { above: Vector3::zeros(), below: Vector3::z() * 0.4 }, None, body);
+    /// let stepper = system.stepper(0.01)?;
+    /// let state = stepper.start(&[(SO3::identity(), R3::from(Vector3::z() * -0.4))], &[Vector6::zeros()])?;
+    /// let forces = stepper.reactions(&state)?;
+    /// assert!((forces[0] - Vector6::z() * 9.81).norm() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn reactions(&self, state: &[f64]) -> Result<Vec<Vector6<f64>>, StepError> {
+        self.check(state)?;
+        let mut forces = alloc::vec![Vector6::zeros(); self.joints().len()];
+        if self.h == 0.0 {
+            return Ok(forces);
+        }
+        let mut state = state.to_vec();
+        with_workspace(|work| self.step_in(&mut state, work, Some(&mut forces)))?;
+        Ok(forces)
+    }
+
+    /// The configurations of both ends of a term between two bodies.
+    pub(super) fn ends<'a>(&self, pair: usize, all: &'a [Body], space: &'a Body) -> [&'a Body; 2] {
+        ends(&self.system.pairs[pair].0, all, space)
+    }
+
+    /// The same system by steps of another length.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::InvalidStep`] for an impossible one.
+    pub fn with_step(&self, h: f64) -> Result<Self, SetupError> {
+        Self::of(self.system.refolded(1.0), h)
+    }
+
+    /// Makes `steps` steps; on an error the state is unchanged. Returns the sum of their iterations.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`](Propagator::step).
+    pub fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
+        self.check(state)?;
+        with_workspace(|work| {
+            let mut before = core::mem::take(&mut work.before);
+            before.clear();
+            before.extend_from_slice(state);
+            let mut iterations = 0;
+            let made = (0..steps).try_for_each(|_| {
+                iterations += u64::from(self.step_in(state, work, None)?.iterations);
+                Ok(())
+            });
+            if made.is_err() {
+                state.copy_from_slice(&before);
+            }
+            work.before = before;
+            made.map(|()| iterations)
+        })
+    }
+
+    /// Makes one step; on an error the state is unchanged.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError`] that names a body or a joint, see the type's contract.
+    pub fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
+        self.check(state)?;
+        with_workspace(|work| self.step_in(state, work, None))
+    }
+
+    /// Sets the memory of a state to that of a new start.
+    pub(super) fn begin(&self, state: &mut [f64]) {
+        let bodies = self.attitudes(state);
+        let momenta: Vec<_> = (0..self.bodies()).map(|body| self.momentum(state, body)).collect();
+        let mut halves = momenta.clone();
+        self.estimate(&bodies, &momenta, &mut halves);
+        self.offsets.begin(state, &halves);
+    }
+}
+
+/// Checks the length of a list of numbers.
+pub(super) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), SetupError> {
+    if found == expected { Ok(()) } else { Err(SetupError::Length { what, found, expected }) }
+}
+
+/// The radius of gyration of a body with this inertia, m.
+fn length(inertia: &Matrix6<f64>) -> f64 {
+    let trace = |first: usize| (first..first + 3).map(|k| inertia[(k, k)]).sum::<f64>();
+    (trace(0) / trace(3)).sqrt()
+}
+
+impl Propagator for MultibodyStepper {
+    fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
+        check_length("attitude", attitude.len(), self.layout.entries())?;
+        check_length("velocity", velocity.len(), self.layout.components())?;
+        let bodies: Vec<_> = attitude.chunks(self.offsets.attitudes() / self.bodies()).map(body_of).collect();
+        let velocities: Vec<_> = velocity.chunks(6).map(Vector6::from_column_slice).collect();
+        Self::start(self, &bodies, &velocities)
+    }
+
+    fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
+        Self::step(self, state)
+    }
+
+    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
+        Self::run(self, state, steps)
+    }
+
+    fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
+        self.check(state)?;
+        let mut next = state.to_vec();
+        // So small a change would be lost in rounding.
+        if fraction.abs() >= f64::EPSILON * f64::EPSILON {
+            let part =
+                self.with_step(self.h * fraction).map_err(|_| StepError::NonFinite { what: "part of the step" })?;
+            part.begin(&mut next);
+            part.step(&mut next)?;
+            self.offsets.set_steps(&mut next, self.offsets.steps(state));
+        }
+        self.begin(&mut next);
+        Ok(next.into())
+    }
+
+    fn adopt(&self, state: &[f64]) -> Box<[f64]> {
+        let known = self.offsets.attitudes() + 6 * self.bodies();
+        let mut adopted = self.offsets.zeros();
+        if state.len() < known {
+            adopted.fill(f64::NAN);
+            return adopted.into();
+        }
+        adopted[..known].copy_from_slice(&state[..known]);
+        self.begin(&mut adopted);
+        adopted.into()
+    }
+
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
+        let is_state = self.check(state).is_ok();
+        for (body, components) in velocity.chunks_exact_mut(6).enumerate() {
+            let of_body = (is_state && body < self.bodies()).then(|| Self::velocity(self, state, body));
+            components.copy_from_slice(of_body.unwrap_or_else(|| Vector6::repeat(f64::NAN)).as_slice());
+        }
+    }
+
+    fn energy(&self, state: &[f64]) -> f64 {
+        Self::energy(self, state)
+    }
+
+    fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
+        let is_state = self.check(state).is_ok();
+        for (body, components) in momentum.chunks_exact_mut(6).enumerate() {
+            let of_body = (is_state && body < self.bodies())
+                .then(|| self.attitude(state, body).inverse().adjoint_transpose(&self.momentum(state, body)));
+            components.copy_from_slice(of_body.unwrap_or_else(|| Vector6::repeat(f64::NAN)).as_slice());
+        }
+    }
+
+    fn defect(&self, state: &[f64]) -> f64 {
+        if self.check(state).is_err() {
+            return f64::NAN;
+        }
+        (0..self.bodies()).map(|body| self.attitude(state, body).defect()).sum()
+    }
+}

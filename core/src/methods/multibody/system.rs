@@ -1,0 +1,214 @@
+//! The description of a system: its bodies, terms and joints.
+
+use alloc::string::String;
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
+use super::Body;
+use super::constraint::Constraint;
+use super::functions::Erased;
+use super::graph::Joined;
+use super::stepper::MultibodyStepper;
+use super::terms::{BodyTerm, PairTerm, of_body, of_pair};
+use crate::error::SetupError;
+use crate::groups::{CayleyRetraction, R3, SO3};
+use crate::mechanics::Effect;
+
+/// A system of rigid bodies, with terms on them and between them, and with joints. Bodies are counted from zero.
+///
+/// Bodies and joints may be of any types and any number. A chain, a tree or several of them have no loop, whether they
+/// are joined to space or not. A joint between bodies that the joints before it connect closes a loop; the choice
+/// doesn't change the motion.
+///
+/// # Examples
+///
+/// Four rods of 1 m on ball joints, both ends on pivots, with a spring between the middle joint and a point of space: a
+/// swing.
+///
+/// ```
+/// use liestep::groups::R3;
+/// use liestep::methods::{BallJoint, Multibody};
+/// use liestep::{NonstandardInertia, SO3, lagrangian};
+/// use nalgebra::{Vector3, Vector6};
+///
+/// /// A body and its weight.
+/// #[lagrangian(
+///     group(F = SO3, d = R3),
+///     advected(x = d.seen_from(space)),
+///     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+///         - 0.5 * h * m * g * (x + x + d).dot(&up),
+/// )]
+/// struct Rod {
+///     J_d: NonstandardInertia, // about the centre of mass
+///     m: f64,
+///     g: f64,
+///     up: Vector3<f64>,
+/// }
+///
+/// /// A spring between a point of one body and a point of another.
+/// #[lagrangian(
+///     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+///     advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
+///     l_d = -0.25 * h * k * ((r + R_2 * at_2 - R_1 * at_1).norm_squared()
+///         + (r + d_2 - d_1 + R_2 * F_2 * at_2 - R_1 * F_1 * at_1).norm_squared()),
+/// )]
+/// struct Cord {
+///     k: f64,
+///     at_1: Vector3<f64>,
+///     at_2: Vector3<f64>,
+/// }
+///
+/// let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3))?;
+/// let (left, right) = (Vector3::x() * -0.5, Vector3::x() * 0.5);
+/// let mut swing = Multibody::new();
+/// for k in 0..4 {
+///     let body = swing.body(Rod { J_d, m: 1.0, g: 9.81, up: Vector3::z() });
+///     match body.checked_sub(1) {
+///         None => swing.join(BallJoint { above: Vector3::zeros(), below: left }, None, body),
+///         Some(before) => swing.join(BallJoint { above: right, below: left }, Some(before), body),
+///     }
+/// }
+/// swing.join(BallJoint { above: Vector3::x() * 3.0, below: right }, None, 3);
+/// swing.between([None, Some(1)], Cord { k: 5.0, at_1: Vector3::x() * 1.5, at_2: right });
+/// let stepper = swing.stepper(0.01)?;
+///
+/// // About a garland; it starts at a place next to it where the joints are closed.
+/// let about = [0, 1, 2, 3].map(|k| {
+///     let tilt = [0.8, 0.3, -0.3, -0.8][k];
+///     let place = [[0.3, -0.4], [1.1, -0.9], [1.9, -0.9], [2.7, -0.4]][k];
+///     (SO3::exp(Vector3::y() * tilt), R3::from(Vector3::new(place[0], 0.0, place[1])))
+/// });
+/// let mut state = stepper.start_nearest(&about, &[Vector6::y() * 0.3; 4])?;
+/// let energy = stepper.energy(&state);
+/// stepper.run(&mut state, 1000)?;
+/// assert!(stepper.widest_gap(&state) < 1e-14);
+/// assert!((stepper.energy(&state) - energy).abs() < 1e-2 * energy.abs());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Default)]
+pub struct Multibody {
+    pub(super) bodies: usize,
+    /// Each with its body.
+    pub(super) terms: Vec<(usize, Arc<dyn BodyTerm>)>,
+    pub(super) pairs: Vec<PlacedPair>,
+    pub(super) joints: Vec<Joined>,
+}
+
+/// A term between two bodies; `None` is space.
+type PlacedPair = ([Option<usize>; 2], Arc<dyn PairTerm>);
+
+impl Multibody {
+    /// A system without bodies.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a body with its kinetic term; returns its number.
+    pub fn body<E>(&mut self, term: E) -> usize
+    where
+        E: Effect<Scalar = f64, Group = (SO3, R3), Retraction = CayleyRetraction> + Send + Sync + 'static,
+        E::Constants: Send + Sync,
+        E::Advected: Send + Sync,
+    {
+        let body = self.bodies;
+        self.bodies += 1;
+        self.on(body, term);
+        body
+    }
+
+    /// Adds a further term to a body.
+    pub fn on<E>(&mut self, body: usize, term: E)
+    where
+        E: Effect<Scalar = f64, Group = (SO3, R3), Retraction = CayleyRetraction> + Send + Sync + 'static,
+        E::Constants: Send + Sync,
+        E::Advected: Send + Sync,
+    {
+        self.terms.push((body, of_body(term)));
+    }
+
+    /// Adds a potential between two bodies, or between space, `None`, and a body. It is a term of the ends of a step.
+    pub fn between<E>(&mut self, bodies: [Option<usize>; 2], term: E)
+    where
+        E: Effect<Scalar = f64, Group = (SO3, R3, SO3, R3), Retraction = CayleyRetraction> + Send + Sync + 'static,
+        E::Constants: Send + Sync,
+        E::Advected: Send + Sync,
+    {
+        self.pairs.push((bodies, of_pair(term)));
+    }
+
+    /// Adds a joint between a body above, or space, `None`, and a body below. Errors count joints from zero.
+    pub fn join<C: Constraint<K>, const K: usize>(&mut self, joint: C, above: Option<usize>, below: usize) {
+        const { assert!(0 < K && K < 7, "a joint between two bodies has one function at least and six at most") }
+        self.joints.push(Joined { functions: Arc::new(Erased(joint)), above, below });
+    }
+
+    /// The number of bodies.
+    #[must_use]
+    pub fn bodies(&self) -> usize {
+        self.bodies
+    }
+
+    /// The stepper of the system by steps of `h`, s.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Stepper::new`](crate::Stepper::new), and [`SetupError::BodyParameter`] for one of several
+    /// bodies; [`SetupError::Joint`] and [`SetupError::JointParameter`] name an invalid joint, [`SetupError::Place`] a
+    /// term at a body that there isn't.
+    pub fn stepper(self, h: f64) -> Result<MultibodyStepper, SetupError> {
+        self.check_places()?;
+        for (body, term) in &self.terms {
+            term.validate().map_err(|error| match error {
+                SetupError::Parameter { field, cause } if self.bodies > 1 => {
+                    SetupError::BodyParameter { body: *body, field, cause }
+                }
+                error => error,
+            })?;
+        }
+        self.pairs.iter().try_for_each(|(_, term)| term.validate())?;
+        MultibodyStepper::of(self, h)
+    }
+
+    /// Checks that terms are at bodies of the system.
+    fn check_places(&self) -> Result<(), SetupError> {
+        if self.bodies == 0 {
+            return Err(SetupError::Place { cause: "a system has a body at least" });
+        }
+        let is_there = |body: usize| body < self.bodies;
+        let on_bodies = self.terms.iter().all(|(body, _)| is_there(*body));
+        if !on_bodies || !self.pairs.iter().flat_map(|(bodies, _)| bodies).flatten().all(|&body| is_there(body)) {
+            return Err(SetupError::Place { cause: "a term is at a body that there isn't" });
+        }
+        if self.pairs.iter().any(|(bodies, _)| bodies[0] == bodies[1]) {
+            return Err(SetupError::Place { cause: "a term is between a body and itself" });
+        }
+        Ok(())
+    }
+
+    /// The system with its constants folded for a step.
+    pub(super) fn refolded(&self, h: f64) -> Self {
+        Self {
+            bodies: self.bodies,
+            terms: self.terms.iter().map(|(body, term)| (*body, term.refolded(h))).collect(),
+            pairs: self.pairs.iter().map(|(bodies, term)| (*bodies, term.refolded(h))).collect(),
+            joints: self.joints.clone(),
+        }
+    }
+
+    /// Whether all constants are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.terms.iter().all(|(_, term)| term.is_finite()) && self.pairs.iter().all(|(_, term)| term.is_finite())
+    }
+
+    /// The derivation of each term.
+    pub(super) fn derivation(&self) -> String {
+        let of_bodies = self.terms.iter().map(|(_, term)| term.derivation());
+        of_bodies.chain(self.pairs.iter().map(|(_, term)| term.derivation())).collect::<Vec<_>>().join("\n")
+    }
+}
+
+/// The bodies at the ends of a term between two, as configurations.
+pub(super) fn ends<'a>(bodies: &[Option<usize>; 2], all: &'a [Body], space: &'a Body) -> [&'a Body; 2] {
+    bodies.map(|body| body.map_or(space, |body| &all[body]))
+}

@@ -1,0 +1,82 @@
+//! The memory of a step's intermediate values.
+//!
+//! Each thread has one, of the size of the largest system that it has stepped: a stepper is shared by threads, and a
+//! state has only what continues it. So nothing is allocated after a thread's first step.
+
+use alloc::boxed::Box;
+use alloc::vec::Vec;
+
+use nalgebra::{Matrix3, Matrix6, Vector6};
+
+use super::constraint::Place;
+use super::equations::Equations;
+use super::{Body, Increment};
+
+/// The intermediate values of a step, of each body.
+#[derive(Default)]
+pub(super) struct Workspace {
+    pub(super) now: Vec<Body>,
+    pub(super) next: Vec<Body>,
+    pub(super) increments: Vec<Increment>,
+    pub(super) places: Vec<Place>,
+    pub(super) next_places: Vec<Place>,
+    pub(super) momenta: Vec<Vector6<f64>>,
+    pub(super) kicks: Vec<Vector6<f64>>,
+    /// The sums of the kicks between bodies.
+    pub(super) between: Vec<Vector6<f64>>,
+    /// The right-hand sides `a`.
+    pub(super) a: Vec<Vector6<f64>>,
+    pub(super) half: Vec<Vector6<f64>>,
+    pub(super) slow: Vec<Vector6<f64>>,
+    pub(super) residuals: Vec<Vector6<f64>>,
+    pub(super) reactions: Vec<Vector6<f64>>,
+    pub(super) matrices: Vec<Matrix6<f64>>,
+    pub(super) turns: Vec<Matrix3<f64>>,
+    pub(super) equations: Equations,
+    /// A state before a run.
+    pub(super) before: Vec<f64>,
+}
+
+impl Workspace {
+    /// Makes room for a number of bodies.
+    pub(super) fn fit(&mut self, bodies: usize) {
+        let space = super::terms::space();
+        self.now.resize(bodies, space);
+        self.next.resize(bodies, space);
+        self.increments.resize(bodies, crate::groups::LieGroup::increment(&space));
+        self.places.resize(bodies, Place::SPACE);
+        self.next_places.resize(bodies, Place::SPACE);
+        for vectors in [
+            &mut self.momenta,
+            &mut self.kicks,
+            &mut self.between,
+            &mut self.a,
+            &mut self.half,
+            &mut self.slow,
+            &mut self.residuals,
+            &mut self.reactions,
+        ] {
+            vectors.resize(bodies, Vector6::zeros());
+        }
+        self.matrices.resize(bodies, Matrix6::zeros());
+        self.turns.resize(bodies, Matrix3::zeros());
+    }
+}
+
+#[cfg(feature = "std")]
+std::thread_local! {
+    static OF_THREAD: core::cell::Cell<Option<Box<Workspace>>> = const { core::cell::Cell::new(None) };
+}
+
+/// Calls a function with the thread's workspace; a call within a call has another one.
+pub(super) fn with_workspace<T>(function: impl FnOnce(&mut Workspace) -> T) -> T {
+    #[cfg(feature = "std")]
+    {
+        let mut workspace = OF_THREAD.take().unwrap_or_default();
+        let result = function(&mut workspace);
+        OF_THREAD.set(Some(workspace));
+        result
+    }
+    #[cfg(not(feature = "std"))]
+    function(&mut Box::<Workspace>::default())
+}

@@ -1,0 +1,76 @@
+//! The nine actions on advected parameters: their change by an increment, and their values at an attitude.
+
+use super::factor::MatrixFactor;
+use super::matrix::Matrix;
+use super::values::{Value, Words};
+use crate::staged::Action;
+
+/// The change of `w` by the increments `F − I` of all factors.
+pub(super) fn change(words: &mut Words, factors: &[MatrixFactor], action: Action, w: &Matrix, d: &[Matrix]) -> Matrix {
+    let inverse = |words: &mut Words, k: usize| factors[k].inverse_increment(words, &d[k]);
+    // `A w B − w` of `A − I` and `B − I`.
+    let both = |words: &mut Words, left: &Matrix, right: &Matrix| {
+        let moved = left.times(words, w);
+        let other = w.plus(words, &moved).times(words, right);
+        moved.plus(words, &other)
+    };
+    match action {
+        Action::Given => Matrix::of(w.rows, w.columns, |_, _| Value::ZERO),
+        Action::Covector(k) => d[k].transpose().times(words, w),
+        Action::Contravariant(k) => inverse(words, k).times(words, w),
+        Action::Point(k) => {
+            let inverse = factors[k].inverse_of_increment(words, &d[k]);
+            let moved = d[k].times(words, &homogeneous(w));
+            affine(&inverse.times(words, &moved).negated(words), w.rows)
+        }
+        Action::ContravariantTensor(k) => {
+            let inverse = inverse(words, k);
+            both(words, &inverse, &inverse.transpose())
+        }
+        Action::CovariantTensor(k) => both(words, &d[k].transpose(), &d[k]),
+        Action::MixedTensor(k) => {
+            let inverse = inverse(words, k);
+            both(words, &inverse, &d[k])
+        }
+        Action::Relative { of, from } => {
+            let inverse = inverse(words, from);
+            both(words, &inverse, &d[of])
+        }
+        Action::Configuration(of) => w.times(words, &d[of]),
+    }
+}
+
+/// The value at the attitudes `g` of all factors for the value `w` in space.
+pub(super) fn at_attitude(
+    words: &mut Words,
+    factors: &[MatrixFactor],
+    action: Action,
+    w: &Matrix,
+    g: &[Matrix],
+) -> Matrix {
+    let inverse = |words: &mut Words, k: usize| factors[k].inverse(words, &g[k]);
+    match action {
+        Action::Given => w.clone(),
+        Action::Covector(k) => g[k].transpose().times(words, w),
+        Action::Contravariant(k) => inverse(words, k).times(words, w),
+        Action::Point(k) => affine(&inverse(words, k).times(words, &homogeneous(w)), w.rows),
+        Action::ContravariantTensor(k) => {
+            let inverse = inverse(words, k);
+            inverse.times(words, w).times(words, &inverse.transpose())
+        }
+        Action::CovariantTensor(k) => g[k].transpose().times(words, w).times(words, &g[k]),
+        Action::MixedTensor(k) => inverse(words, k).times(words, w).times(words, &g[k]),
+        Action::Relative { of, from } => inverse(words, from).times(words, w).times(words, &g[of]),
+        Action::Configuration(of) => w.times(words, &g[of]),
+    }
+}
+
+/// A point with its last coordinate, one.
+fn homogeneous(point: &Matrix) -> Matrix {
+    Matrix::column_of([point.entries.as_slice(), &[Value::ONE]].concat())
+}
+
+/// The first coordinates of a column.
+fn affine(column: &Matrix, rows: usize) -> Matrix {
+    Matrix::column_of(column.entries[..rows].to_vec())
+}

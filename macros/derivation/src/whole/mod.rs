@@ -1,0 +1,75 @@
+//! The whole step of a declaration as straight-line programs on numbers, for any group.
+//!
+//! The programs of `staged` are the parts of a step that a Lagrangian decides. Here they become a step: increments, inverses,
+//! tangents and the coadjoint action are written out from the generators alone, as are the actions on advected parameters and
+//! the elimination of the Newton system, with all zeros and ones left out. What runs them compares numbers and copies
+//! them, and knows no group.
+//!
+//! Operations have the order of the library's own groups and solves, so that a step has the bits of the compiled one; from
+//! five rows on, pivots are taken on the diagonal.
+//!
+//! Deliberately not here: any decision of a run, such as how often to iterate.
+//!
+//! The files depend on each other in one direction: `step → limit → writer → {actions, solved} → factor → relations → {basis
+//! → linear, matrix → values}`.
+
+mod actions;
+mod basis;
+mod factor;
+mod limit;
+mod linear;
+mod matrix;
+mod relations;
+mod solved;
+mod step;
+mod values;
+mod writer;
+
+use std::fmt;
+
+pub use basis::{Basis, Chart, Form};
+pub use factor::MatrixFactor;
+pub use step::{Programs, Sizes, WholeStep};
+pub use values::{Value, Words};
+
+/// The limit on the operations of a step: four times those of twelve dimensions in matrices of four rows.
+pub const MOST_OPERATIONS: usize = 40_000;
+
+/// The reason why a declaration has no step as programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepRefusal {
+    /// A generator of the group is a combination of others.
+    Dependent,
+    /// The Cayley map leaves the group, and so does that of multiples of this generator, whose cube isn't a multiple of it.
+    Cube {
+        /// Its index, from zero.
+        generator: usize,
+    },
+    /// There is no kinetic part, so that no velocity has a momentum.
+    NoKinetic,
+    /// The step has more operations than this limit.
+    TooLong {
+        /// The limit.
+        most: usize,
+    },
+}
+
+impl fmt::Display for StepRefusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Dependent => write!(f, "the generators of the group depend on each other: leave one out"),
+            Self::Cube { generator } => write!(
+                f,
+                "the Cayley map leaves the group, and the cube of generator {} isn't a multiple of it: choose generators \
+                 `E` with `E³ = c E`",
+                generator + 1
+            ),
+            Self::NoKinetic => write!(f, "there is no kinetic part, so no step: add a Lagrangian of the velocity"),
+            Self::TooLong { most } => {
+                write!(f, "a step has more than {most} operations: declare a smaller group or a shorter Lagrangian")
+            }
+        }
+    }
+}
+
+impl std::error::Error for StepRefusal {}

@@ -1,0 +1,335 @@
+//! The programs of a whole step.
+
+use super::actions::{at_attitude, change};
+use super::basis::Form;
+use super::factor::MatrixFactor;
+use super::limit::Limit;
+use super::matrix::Matrix;
+use super::solved::Factorisation;
+use super::values::{Value, Words};
+use super::writer::Writer;
+use super::{MOST_OPERATIONS, StepRefusal};
+use crate::staged::{Action, Array, Program, Source, StagedDeclaration};
+
+/// The sizes of a state's parts, and their places: attitude, momentum, advected parameters, half the coordinates of the last
+/// increment and their difference to those before, a guess of the next, and the number of steps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sizes {
+    /// The number of components of a momentum.
+    pub n: usize,
+    /// The number of entries of an attitude.
+    pub entries: usize,
+    /// The number of advected and given numbers.
+    pub carried: usize,
+    /// The number of blocks of the Newton system with a determinant of their own.
+    pub dets: usize,
+    /// The number of factors whose increments may be far from the identity.
+    pub near: usize,
+    /// The number of factors that [`Programs::restored`] restores.
+    pub attitudes: usize,
+}
+
+impl Sizes {
+    /// The place of the momentum.
+    #[must_use]
+    pub const fn momentum(&self) -> usize {
+        self.entries
+    }
+
+    /// The place of the advected parameters.
+    #[must_use]
+    pub const fn advected(&self) -> usize {
+        self.entries + self.n
+    }
+
+    /// The place of half the coordinates of the last increment, and of their difference.
+    #[must_use]
+    pub const fn history(&self) -> usize {
+        self.advected() + self.carried
+    }
+
+    /// The place of the guess.
+    #[must_use]
+    pub const fn guess(&self) -> usize {
+        self.history() + 2 * self.n
+    }
+
+    /// The number of numbers of a state.
+    #[must_use]
+    pub const fn state(&self) -> usize {
+        self.guess() + self.n + 1
+    }
+}
+
+/// The programs of a step. Each names its inputs; all but the first may read the constants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Programs {
+    /// The constants, of the parameters and the step.
+    pub constants: Program,
+    /// Of momentum and advected: the target `a` of the momentum equation, and `a·a`.
+    pub target: Program,
+    /// Of half, target and advected, a Newton iteration: the next half, the squares of the update and of the next half, then
+    /// for each block of the Jacobian its determinant and the product of its diagonal, and its factors.
+    pub iterate: Program,
+    /// Of the same and of the factors with the determinants before them: the next half by the old Jacobian, and both squares.
+    pub again: Program,
+    /// Of half, target, momentum, advected, attitude and history: the state without the number of steps, the sum of momentum
+    /// and advected, and for each factor whose increment may be far from the identity a number, whose product with the square
+    /// of `s` is below one if `s` times the increment is near it.
+    pub finish: Program,
+    /// Of parameters and advected: determinants and diagonals of the inertia, where it varies.
+    pub safe: Option<Program>,
+    /// Of the attitude and of the parameters: the advected parameters.
+    pub seen: Program,
+    /// Of the attitude: for each factor that [is restored](MatrixFactor::is_restored) its distance from the group, and a
+    /// nearer matrix.
+    pub restored: Program,
+    /// Of the attitude: the sum of the factors' distances from their groups.
+    pub defect: Program,
+    /// Of parameters and advected: the inertia at rest, row by row.
+    pub inertia: Program,
+    /// Of momentum, parameters and advected: the velocity by the inertia at rest; an estimate where the continuous limit isn't
+    /// quadratic.
+    pub velocity: Program,
+    /// Of velocity, parameters and advected: the momentum.
+    pub momentum: Program,
+    /// Of the same: the derivative of the momentum by the velocity, where the continuous limit isn't quadratic.
+    pub hessian: Option<Program>,
+    /// Of the same: the energy, J.
+    pub energy: Program,
+    /// Of attitude and momentum: the momentum in space.
+    pub spatial: Program,
+    /// Of advected: the trace of the Jacobian at rest, then its determinants and diagonals.
+    pub rest: Program,
+}
+
+impl Programs {
+    /// The operations of all programs.
+    fn operations(&self) -> usize {
+        let all = [&self.target, &self.iterate, &self.again, &self.finish, &self.seen, &self.restored];
+        all.iter().map(|program| program.operations.len()).sum()
+    }
+}
+
+/// A step of a declaration as programs.
+#[derive(Clone, Debug)]
+pub struct WholeStep {
+    /// The sizes of a state's parts.
+    pub sizes: Sizes,
+    /// The factors of the group.
+    pub factors: Vec<MatrixFactor>,
+    /// The programs.
+    pub programs: Programs,
+}
+
+impl WholeStep {
+    /// Writes the step of a declaration.
+    ///
+    /// # Errors
+    ///
+    /// The reason why there is none.
+    pub fn of(staged: &StagedDeclaration) -> Result<Self, StepRefusal> {
+        if !staged.has_kinetic {
+            return Err(StepRefusal::NoKinetic);
+        }
+        let dimension: usize = staged.factors.iter().map(|factor| factor.generators.len()).sum();
+        let too_long = StepRefusal::TooLong { most: MOST_OPERATIONS };
+        // An elimination has `n³/3` products alone.
+        if dimension.pow(3) / 3 > MOST_OPERATIONS {
+            return Err(too_long);
+        }
+        let writer = Writer::of(staged)?;
+        let programs = writer.programs();
+        if programs.operations() > MOST_OPERATIONS {
+            return Err(too_long);
+        }
+        let count = |is_one: fn(&MatrixFactor) -> bool| writer.factors.iter().filter(|factor| is_one(factor)).count();
+        let (n, numbers) = (writer.dimension(), programs.iterate.outputs.len());
+        let sizes = Sizes {
+            n,
+            entries: writer.entries,
+            carried: writer.carried,
+            dets: (numbers - n * n - n - 2) / 2,
+            near: count(|factor| factor.form != Form::Translation),
+            attitudes: count(MatrixFactor::is_restored),
+        };
+        Ok(Self { sizes, factors: writer.factors, programs })
+    }
+}
+
+impl Writer<'_> {
+    fn programs(&self) -> Programs {
+        let Limit { inertia, safe, velocity, momentum, hessian, energy } = self.limit();
+        Programs {
+            constants: self.staged.programs.constants.clone(),
+            target: self.target(),
+            iterate: self.iterate(),
+            again: self.again(),
+            finish: self.finish(),
+            safe: (!self.staged.has_constant_inertia).then_some(safe),
+            seen: self.seen(),
+            restored: self.restored(),
+            defect: self.defect(),
+            inertia,
+            velocity,
+            momentum,
+            hessian,
+            energy,
+            spatial: self.spatial(),
+            rest: self.rest(),
+        }
+    }
+
+    fn target(&self) -> Program {
+        let mut words = Words::default();
+        let mut target = Value::inputs(Array::Momentum, self.dimension());
+        if self.staged.parts[1] {
+            let kick = words.append(&self.staged.programs.kick_before, Value::Input);
+            target = words.added(&target, &kick);
+        }
+        target.push(words.dot(&target, &target));
+        words.program(&target)
+    }
+
+    fn iterate(&self) -> Program {
+        let (mut words, half) = (Words::default(), Value::inputs(Array::Half, self.dimension()));
+        let (residual, jacobian) = self.system(&mut words, &half, &Value::Input);
+        let Factorisation { factors, determinants } = self.pattern.factorise(&mut words, &jacobian);
+        let update = self.pattern.solve(&mut words, &factors, determinants[0][0], &residual);
+        let next = updated(&mut words, &half, &update);
+        words.program(&[next.as_slice(), determinants.as_flattened(), &factors].concat())
+    }
+
+    fn again(&self) -> Program {
+        let (mut words, n) = (Words::default(), self.dimension());
+        let half = Value::inputs(Array::Half, n);
+        let residual = self.residual(&mut words, &half);
+        let before = 2 * self.pattern.determinants();
+        let factors = Value::inputs(Array::Factors, before + n * n);
+        let update = self.pattern.solve(&mut words, &factors[before..], factors[0], &residual);
+        let next = updated(&mut words, &half, &update);
+        words.program(&next)
+    }
+
+    fn finish(&self) -> Program {
+        let (mut words, n) = (Words::default(), self.dimension());
+        let half = Value::inputs(Array::Half, n);
+        let d = self.increments(&mut words, &half);
+        let mut next = Vec::new();
+        for (w, carried) in self.advected(Array::Advected).iter().zip(&self.staged.carried) {
+            let moved = change(&mut words, &self.factors, carried.action, w, &d);
+            next.extend(w.plus(&mut words, &moved).entries);
+        }
+        let momentum = self.transported(&mut words, &d, &next);
+        let sum = momentum.iter().chain(&next).fold(Value::ZERO, |sum, &entry| words.add(sum, entry));
+        let mut attitude = Vec::new();
+        for (factor, d) in self.factors.iter().zip(&d) {
+            let g = factor.read(Array::Attitude);
+            attitude.extend(factor.advanced(&mut words, &g, d).entries);
+        }
+        let history = Value::inputs(Array::History, 2 * n);
+        let differences = words.subtracted(&half, &history[..n]);
+        let second = words.subtracted(&differences, &history[n..]);
+        let both = words.added(&differences, &second);
+        let guess = words.added(&half, &both);
+        let near: Vec<Value> =
+            self.factors.iter().filter_map(|factor| factor.nearness(&mut words, factor.own(&half))).collect();
+        words.program(&[attitude, momentum, next, half, differences, guess, vec![sum], near].concat())
+    }
+
+    /// The momentum after the step: `μ + (Ad*_F a − a) + (a − μ)` and the kick after the solve.
+    fn transported(&self, words: &mut Words, d: &[Matrix], next: &[Value]) -> Vec<Value> {
+        let (n, stages) = (self.dimension(), &self.staged.programs);
+        let (momentum, target) = (Value::inputs(Array::Momentum, n), Value::inputs(Array::Target, n));
+        let [_, has_before, has_after] = self.staged.parts;
+        let factors = self.factors.iter().zip(d);
+        let mut moved: Vec<Value> =
+            factors.flat_map(|(factor, d)| factor.coadjoint_change(words, d, factor.own(&target))).collect();
+        if has_before {
+            let kick = words.subtracted(&target, &momentum);
+            moved = words.added(&moved, &kick);
+        }
+        if has_after {
+            let read = |source: Source| match source.array {
+                Array::Next => next[source.at],
+                _ => Value::Input(source),
+            };
+            let kick = self.with_increments(words, &stages.kick_after, d, &read);
+            moved = words.added(&moved, &kick);
+        }
+        words.added(&momentum, &moved)
+    }
+
+    fn attitudes(&self) -> Vec<Matrix> {
+        self.factors.iter().map(|factor| factor.read(Array::Attitude)).collect()
+    }
+
+    fn seen(&self) -> Program {
+        let (mut words, g, mut all) = (Words::default(), self.attitudes(), Vec::new());
+        let carried = &self.staged.carried;
+        for (at, one) in carried.iter().enumerate() {
+            let (rows, columns) = one.shape;
+            let w = match (one.field, one.action) {
+                (Some(field), _) => {
+                    let first: usize = self.staged.parameters[..field].iter().map(|p| p.kind.len()).sum();
+                    Matrix::of(rows, columns, |i, j| {
+                        Value::Input(Source::new(Array::Parameters, first + i * columns + j))
+                    })
+                }
+                // The directions of space, one after the other.
+                (None, Action::Covector(_)) => {
+                    let number = carried[..at].iter().filter(|other| *other == one).count() % rows;
+                    Matrix::of(rows, columns, |i, _| Value::one_if(i == number))
+                }
+                (None, _) => Matrix::identity(rows),
+            };
+            all.extend(at_attitude(&mut words, &self.factors, one.action, &w, &g).entries);
+        }
+        words.program(&all)
+    }
+
+    fn restored(&self) -> Program {
+        let mut words = Words::default();
+        let all = self.factors.iter().zip(self.attitudes());
+        let all: Vec<Value> = all.filter_map(|(factor, g)| factor.restored(&mut words, &g)).flatten().collect();
+        words.program(&all)
+    }
+
+    fn defect(&self) -> Program {
+        let mut words = Words::default();
+        let sum = self.factors.iter().fold(Value::ZERO, |sum, factor| {
+            let defect = factor.defect(&mut words, &factor.read_all(Array::Attitude));
+            words.add(sum, defect)
+        });
+        words.program(&[sum])
+    }
+
+    fn spatial(&self) -> Program {
+        let (mut words, mut all) = (Words::default(), Vec::new());
+        let momentum = Value::inputs(Array::Momentum, self.dimension());
+        for (factor, g) in self.factors.iter().zip(self.attitudes()) {
+            all.extend(factor.in_space(&mut words, &g, factor.own(&momentum)));
+        }
+        words.program(&all)
+    }
+
+    fn rest(&self) -> Program {
+        let (mut words, n) = (Words::default(), self.dimension());
+        let read = |source: Source| match source.array {
+            Array::Half | Array::Target => Value::ZERO,
+            _ => Value::Input(source),
+        };
+        let (_, jacobian) = self.system(&mut words, &vec![Value::ZERO; n], &read);
+        let determinants = self.pattern.factorise(&mut words, &jacobian).determinants;
+        let trace = (0..n).fold(Value::ZERO, |sum, k| words.add(sum, jacobian.at(k, k)));
+        words.program(&[&[trace], determinants.as_flattened()].concat())
+    }
+}
+
+/// Half the coordinates less their update, and the squares of update and result.
+fn updated(words: &mut Words, half: &[Value], update: &[Value]) -> Vec<Value> {
+    let mut next = words.subtracted(half, update);
+    let squares = [words.dot(update, update), words.dot(&next, &next)];
+    next.extend(squares);
+    next
+}

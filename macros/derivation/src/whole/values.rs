@@ -1,0 +1,263 @@
+//! Values of straight-line code under construction, and the words that make new ones of them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::staged::{Array, Function, Operation, Program, Source};
+
+/// A value of a program under construction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Value {
+    /// A number, as its bits.
+    Number(u64),
+    /// An input of the program.
+    Input(Source),
+    /// The result of an operation of the program.
+    Result(usize),
+}
+
+impl Value {
+    /// Zero.
+    pub const ZERO: Self = Self::Number(0);
+    /// One.
+    pub const ONE: Self = Self::Number(1.0_f64.to_bits());
+
+    /// A number; zeros of both signs are equal.
+    #[must_use]
+    pub fn of(number: f64) -> Self {
+        Self::Number((number + 0.0).to_bits())
+    }
+
+    /// One if that holds, else zero.
+    #[must_use]
+    pub const fn one_if(holds: bool) -> Self {
+        if holds { Self::ONE } else { Self::ZERO }
+    }
+
+    /// The first `count` inputs of an array.
+    #[must_use]
+    pub fn inputs(array: Array, count: usize) -> Vec<Self> {
+        (0..count).map(|at| Self::Input(Source::new(array, at))).collect()
+    }
+
+    fn number(self) -> Option<f64> {
+        match self {
+            Self::Number(bits) => Some(f64::from_bits(bits)),
+            _ => None,
+        }
+    }
+}
+
+/// An operation on values.
+type Made = Operation<Value>;
+
+/// A program under construction.
+///
+/// Operations on known numbers are folded, equal operations are made once, and sums with zero, products with zero and one
+/// and double negations are left out. The results have the bits of the operations as they are written, but for the sign of
+/// a zero, and for products of zero with what isn't finite.
+#[derive(Debug, Default)]
+pub struct Words {
+    operations: Vec<Made>,
+    known: BTreeMap<Made, Value>,
+    /// The values of functions, where more is folded than keeps the bits.
+    applied: Option<fn(Function, f64) -> f64>,
+}
+
+impl Words {
+    /// A program whose functions of known numbers are folded, too, whose numerical factors are collected, and whose divisions by
+    /// a number are products: its results differ by rounding.
+    #[must_use]
+    pub fn rounded(applied: fn(Function, f64) -> f64) -> Self {
+        Self { applied: Some(applied), ..Self::default() }
+    }
+
+    /// The number of operations so far.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.operations.len()
+    }
+
+    fn push(&mut self, made: Made) -> Value {
+        let operations = &mut self.operations;
+        *self.known.entry(made).or_insert_with(|| {
+            operations.push(made);
+            Value::Result(operations.len() - 1)
+        })
+    }
+
+    /// The operation that a value is the result of.
+    fn made(&self, value: Value) -> Option<Made> {
+        match value {
+            Value::Result(at) => self.operations.get(at).copied(),
+            _ => None,
+        }
+    }
+
+    /// The value whose negative this is the result of.
+    fn negated(&self, value: Value) -> Option<Value> {
+        match self.made(value) {
+            Some(Made::Negate(a)) => Some(a),
+            _ => None,
+        }
+    }
+
+    /// `−a`.
+    pub fn negate(&mut self, a: Value) -> Value {
+        match a.number() {
+            Some(a) => Value::of(-a),
+            None => self.negated(a).unwrap_or_else(|| self.push(Made::Negate(a))),
+        }
+    }
+
+    /// `a + b`.
+    pub fn add(&mut self, a: Value, b: Value) -> Value {
+        match (a.number(), b.number()) {
+            (Some(a), Some(b)) => Value::of(a + b),
+            (Some(0.0), _) => b,
+            (_, Some(0.0)) => a,
+            _ => match (self.negated(a), self.negated(b)) {
+                (_, Some(b)) => self.subtract(a, b),
+                (Some(a), None) => self.subtract(b, a),
+                _ => self.push(Made::Add(a.min(b), a.max(b))),
+            },
+        }
+    }
+
+    /// `a − b`.
+    pub fn subtract(&mut self, a: Value, b: Value) -> Value {
+        match (a.number(), b.number()) {
+            (Some(a), Some(b)) => Value::of(a - b),
+            (Some(0.0), _) => self.negate(b),
+            (_, Some(0.0)) => a,
+            _ => match self.negated(b) {
+                Some(b) => self.add(a, b),
+                None => self.push(Made::Subtract(a, b)),
+            },
+        }
+    }
+
+    /// `a b`.
+    pub fn multiply(&mut self, a: Value, b: Value) -> Value {
+        // Numbers are the least values.
+        let (a, b) = (a.min(b), a.max(b));
+        match (a.number(), b.number()) {
+            (Some(a), Some(b)) => Value::of(a * b),
+            (Some(0.0), _) => Value::ZERO,
+            (Some(1.0), _) => b,
+            (Some(-1.0), _) => self.negate(b),
+            (Some(number), _) if self.applied.is_some() => self.collected(number, b),
+            _ => match (self.negated(a), self.negated(b)) {
+                (Some(a), Some(b)) => self.multiply(a, b),
+                (None, None) => self.push(Made::Multiply(a, b)),
+                (x, y) => {
+                    let product = self.multiply(x.unwrap_or(a), y.unwrap_or(b));
+                    self.negate(product)
+                }
+            },
+        }
+    }
+
+    /// A number times a value that may have a factor.
+    fn collected(&mut self, number: f64, b: Value) -> Value {
+        match self.made(b) {
+            Some(Made::Multiply(Value::Number(factor), c)) => {
+                self.multiply(Value::of(number * f64::from_bits(factor)), c)
+            }
+            Some(Made::Negate(c)) => self.multiply(Value::of(-number), c),
+            _ => self.push(Made::Multiply(Value::of(number), b)),
+        }
+    }
+
+    /// `a / b`.
+    pub fn divide(&mut self, a: Value, b: Value) -> Value {
+        match (a.number(), b.number()) {
+            (Some(a), Some(b)) => Value::of(a / b),
+            (Some(0.0), _) => Value::ZERO,
+            (_, Some(1.0)) => a,
+            (_, Some(b)) if self.applied.is_some() && (1.0 / b).is_normal() => self.multiply(a, Value::of(1.0 / b)),
+            _ => self.push(Made::Divide(a, b)),
+        }
+    }
+
+    /// A function of `a`.
+    pub fn apply(&mut self, function: Function, a: Value) -> Value {
+        match (a.number(), self.applied) {
+            (Some(a), Some(applied)) => Value::of(applied(function, a)),
+            _ => self.push(Made::Apply(function, a)),
+        }
+    }
+
+    /// `Σ a_k b_k`, in this order.
+    pub fn dot(&mut self, a: &[Value], b: &[Value]) -> Value {
+        a.iter().zip(b).fold(Value::ZERO, |sum, (&a, &b)| {
+            let product = self.multiply(a, b);
+            self.add(sum, product)
+        })
+    }
+
+    /// The sums of entries with the same index.
+    pub fn added(&mut self, a: &[Value], b: &[Value]) -> Vec<Value> {
+        a.iter().zip(b).map(|(&a, &b)| self.add(a, b)).collect()
+    }
+
+    /// The differences of entries with the same index.
+    pub fn subtracted(&mut self, a: &[Value], b: &[Value]) -> Vec<Value> {
+        a.iter().zip(b).map(|(&a, &b)| self.subtract(a, b)).collect()
+    }
+
+    /// Adds the operations of a program with these inputs; returns its outputs.
+    pub fn append(&mut self, program: &Program, input: impl Fn(Source) -> Value) -> Vec<Value> {
+        let literals = program.literals.iter().map(|&literal| Value::of(literal));
+        let mut values: Vec<Value> = program.inputs.iter().map(|&source| input(source)).chain(literals).collect();
+        for &operation in &program.operations {
+            let [a, b] = operation.operands().map(|at| values[at]);
+            values.push(match operation {
+                Operation::Negate(_) => self.negate(a),
+                Operation::Add(..) => self.add(a, b),
+                Operation::Subtract(..) => self.subtract(a, b),
+                Operation::Multiply(..) => self.multiply(a, b),
+                Operation::Divide(..) => self.divide(a, b),
+                Operation::Apply(function, _) => self.apply(function, a),
+            });
+        }
+        program.outputs.iter().map(|&at| values[at as usize]).collect()
+    }
+
+    /// The program of these outputs, without the operations that they don't need.
+    #[must_use]
+    pub fn program(&self, outputs: &[Value]) -> Program {
+        let mut needed: BTreeSet<Value> = outputs.iter().copied().collect();
+        for (at, made) in self.operations.iter().enumerate().rev() {
+            if needed.contains(&Value::Result(at)) {
+                needed.extend(made.read());
+            }
+        }
+        let (mut inputs, mut literals, mut operations) = (Vec::new(), Vec::new(), Vec::new());
+        for &value in &needed {
+            match value {
+                Value::Input(source) => inputs.push(source),
+                Value::Number(bits) => literals.push(f64::from_bits(bits)),
+                Value::Result(_) => operations.extend(self.made(value)),
+            }
+        }
+        // A set has numbers before inputs and results; a program has its inputs first.
+        let (numbers, others) = (literals.len(), inputs.len());
+        let place = |at: usize| match at {
+            at if at < numbers => at + others,
+            at if at < numbers + others => at - numbers,
+            at => at,
+        };
+        let registers: BTreeMap<Value, u32> = needed
+            .iter()
+            .enumerate()
+            .map(|(at, &value)| (value, u32::try_from(place(at)).unwrap_or(u32::MAX)))
+            .collect();
+        let register = |value: Value| registers.get(&value).copied().unwrap_or(u32::MAX);
+        Program {
+            inputs,
+            literals,
+            operations: operations.iter().map(|made| made.of(made.read().map(register))).collect(),
+            outputs: outputs.iter().map(|&output| register(output)).collect(),
+        }
+    }
+}
