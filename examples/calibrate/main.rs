@@ -1,8 +1,8 @@
 //! Estimation of a top's inertia from the readings of a gyroscope in it.
 //!
 //! ```text
-//! cargo run --release -p liestep-calibrate --example calibrate
-//! cargo run --release -p liestep-calibrate --example calibrate -- --quick         three sets of readings in place of twenty
+//! cargo run --release -p liestep-examples --example calibrate
+//! cargo run --release -p liestep-examples --example calibrate -- --quick         three sets of readings in place of twenty
 //! ```
 //!
 //! A gyroscope is read a hundred times a second for ten seconds. Twelve numbers determine the readings: three moments,

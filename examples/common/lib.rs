@@ -9,6 +9,7 @@
 
 pub mod args;
 pub mod double_double;
+pub mod drawing;
 pub mod heavy_top;
 pub mod measure;
 pub mod newton_tolerance;

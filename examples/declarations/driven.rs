@@ -20,9 +20,10 @@ use liestep::mechanics::Effect as _;
 use liestep::prelude::*;
 use nalgebra::{Matrix4, Point3, Rotation3, Vector3, Vector4, Vector6};
 
-use workbench::args::{Failure, example};
-use workbench::output::{Output, print};
-use workbench::plot::{BLUE, GREEN, Line, ORANGE, Panel, PlotResult, Vertical, heading, legend, px, render};
+use workbench::args::Failure;
+use workbench::drawing::{self, drawing, path, stacked};
+use workbench::output::Output;
+use workbench::plot::{BLUE, Colour, GREEN, Line, ORANGE, Panel, PlotResult, Vertical};
 
 const HELP: &str = "Drives a satellite in its orbit, a thruster on SE(3), and switched magnetic torquers
 
@@ -31,41 +32,18 @@ Options:
 ";
 
 fn main() -> ExitCode {
-    example(HELP, |words| {
-        let mut folder = "liestep-driven".into();
-        while let Some(option) = words.option()? {
-            match option.as_str() {
-                "out" => folder = words.folder()?,
-                _ => return Err(words.unknown()),
-            }
-        }
-        let mut output = Output::new(folder)?;
-        let report = format!("{}{}{}", orbit(&mut output)?, thruster(&mut output)?, torquers(&mut output)?);
-        print(&format!("{report}{output}"))?;
-        Ok(())
+    drawing(HELP, "liestep-driven", |output| {
+        Ok(format!("{}{}{}", orbit(output)?, thruster(output)?, torquers(output)?))
     })
 }
 
 /// A line through points, or one over time.
-fn line(colour: plotters::style::RGBColor, points: Vec<(f64, f64)>) -> Line {
-    Line { colour, width: 3, points }
+fn line(colour: Colour, points: Vec<(f64, f64)>) -> Line {
+    drawing::line(colour, 3, points)
 }
 
-/// Two panels, one above the other.
-fn figure(
-    title: &str,
-    about: &str,
-    names: &[(&str, plotters::style::RGBColor)],
-    panels: &[Panel<'_>; 2],
-) -> PlotResult<String> {
-    render((900, 700), |area| {
-        let (header, body) = area.split_vertically(px(84));
-        heading(&header, title, about)?;
-        legend(&header, (16, 68), names)?;
-        let (above, below) = body.split_vertically(px(308));
-        panels[0].draw(&above)?;
-        panels[1].draw(&below)
-    })
+fn figure(title: &str, about: &str, names: &[(&str, Colour)], panels: &[Panel<'_>; 2]) -> PlotResult<String> {
+    stacked(((900, 700), 308), [title, about], names, panels)
 }
 
 /// The orbital rate, rad/s.
@@ -140,14 +118,7 @@ fn thruster(output: &mut Output) -> Result<String, Failure> {
     }
     let end = energy[energy.len() - 1].1;
     let panels = [
-        Panel {
-            title: "The way, m",
-            across: "x",
-            up: "y",
-            vertical: Vertical::Linear,
-            function: false,
-            lines: vec![line(ORANGE, burning), line(BLUE, gliding)],
-        },
+        path("The way, m", ["x", "y"], vec![line(ORANGE, burning), line(BLUE, gliding)]),
         Panel::over_time("Kinetic energy", "J", Vertical::Linear, vec![line(BLUE, energy)]),
     ];
     let names = [("burning", ORANGE), ("gliding", BLUE)];

@@ -18,11 +18,11 @@ use liestep::groups::R3;
 use liestep::mechanics::Inertia;
 use liestep::prelude::*;
 use nalgebra::{Matrix3, SVector, UnitQuaternion, Vector3, Vector6};
-use plotters::style::RGBColor;
 
-use workbench::args::{Failure, example};
-use workbench::output::{Output, print};
-use workbench::plot::{BLUE, GREEN, Line, ORANGE, Panel, PlotResult, Vertical, heading, legend, px, render};
+use workbench::args::Failure;
+use workbench::drawing::{self, drawing, path, stacked};
+use workbench::output::Output;
+use workbench::plot::{BLUE, Colour, GREEN, Line, ORANGE, Panel, PlotResult, Vertical};
 
 const HELP: &str = "Draws a double pendulum, two asteroids, and a load under a quadrotor
 
@@ -31,18 +31,8 @@ Options:
 ";
 
 fn main() -> ExitCode {
-    example(HELP, |words| {
-        let mut folder = "liestep-several-bodies".into();
-        while let Some(option) = words.option()? {
-            match option.as_str() {
-                "out" => folder = words.folder()?,
-                _ => return Err(words.unknown()),
-            }
-        }
-        let mut output = Output::new(folder)?;
-        let report = format!("{}{}{}", pendulums(&mut output)?, asteroids(&mut output)?, load(&mut output)?);
-        print(&format!("{report}{output}"))?;
-        Ok(())
+    drawing(HELP, "liestep-several-bodies", |output| {
+        Ok(format!("{}{}{}", pendulums(output)?, asteroids(output)?, load(output)?))
     })
 }
 
@@ -51,27 +41,12 @@ fn check(what: &str, found: f64, bound: f64) -> Result<(), Failure> {
     if found < bound { Ok(()) } else { Err(format!("{what}: {found:.1e}, at most {bound:.0e} is expected").into()) }
 }
 
-type Points = Vec<(f64, f64)>;
-
-fn line(colour: RGBColor, points: Points) -> Line {
-    Line { colour, width: 2, points }
+fn line(colour: Colour, points: Vec<(f64, f64)>) -> Line {
+    drawing::line(colour, 2, points)
 }
 
-/// A panel of paths in a plane.
-fn path<'a>(title: &'a str, [across, up]: [&'a str; 2], lines: Vec<Line>) -> Panel<'a> {
-    Panel { title, across, up, vertical: Vertical::Linear, function: false, lines }
-}
-
-/// Two panels, one above the other.
-fn figure(title: &str, about: &str, names: &[(&str, RGBColor)], panels: &[Panel<'_>; 2]) -> PlotResult<String> {
-    render((700, 900), |area| {
-        let (header, body) = area.split_vertically(px(84));
-        heading(&header, title, about)?;
-        legend(&header, (16, 68), names)?;
-        let (above, below) = body.split_vertically(px(520));
-        panels[0].draw(&above)?;
-        panels[1].draw(&below)
-    })
+fn figure(title: &str, about: &str, names: &[(&str, Colour)], panels: &[Panel<'_>; 2]) -> PlotResult<String> {
+    stacked(((700, 900), 520), [title, about], names, panels)
 }
 
 /// Rods of a metre and a kilogram that hang along their axes.

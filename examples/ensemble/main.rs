@@ -2,27 +2,31 @@
 //! section of it.
 //!
 //! ```text
-//! cargo run --release -p liestep-ensemble-example --example ensemble
-//! cargo run --release -p liestep-ensemble-example --example ensemble -- --quick
-//! cargo run --release -p liestep-ensemble-example --example ensemble -- --shard 2/8 --out shared     one task of an array; the last draws
+//! cargo run --release -p liestep-examples --example ensemble
+//! cargo run --release -p liestep-examples --example ensemble -- --quick
+//! cargo run --release -p liestep-examples --example ensemble -- --shard 2/8 --out shared     one task of an array; the last draws
 //! ```
 //!
 //! An interrupted run is resumed by the next one. The folders `satellite`, `map` and `section` have the files; polars
 //! and pandas read them.
 
+mod map;
+mod satellite;
+mod section;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use ensembles::map::Grid;
-use ensembles::{Mistake, satellite, section};
 use liestep::motion::Integrator;
 use liestep_ensemble::{Ensemble, Local, Report, Store, Summary, share_of};
 use plotters::prelude::{Circle, RGBColor, Rectangle};
 use plotters::style::Color as _;
-use workbench::args::example;
+use workbench::args::{Failure as Mistake, example};
 use workbench::output::{Output, print};
 use workbench::plot::{Area, BLUE, GREEN, Line, ORANGE, Panel, PlotResult, Vertical, heading, legend, px, render};
 use workbench::progress::Progress;
+
+use map::Grid;
 
 const HELP: &str =
     "Runs three ensembles and draws how soon a tumbling satellite is lost, where a top is chaotic, and a section of it

@@ -23,25 +23,23 @@ type Top = Stepper<Sum<PrincipalBody, Gravity>>;
 
 /// A grid of tilts (0.1 to 3 rad) across and spins (0 to 8 rad/s) upwards.
 #[derive(Clone, Copy, Debug)]
-pub struct Grid {
+pub(crate) struct Grid {
     /// The number of points across.
-    pub tilts: u64,
+    pub(crate) tilts: u64,
     /// The number of points upwards.
-    pub spins: u64,
+    pub(crate) spins: u64,
 }
 
 impl Grid {
     /// The tilt and the spin of a point, rad and rad/s.
-    #[must_use]
     #[allow(clippy::cast_precision_loss)] // a grid
-    pub fn point(&self, number: u64) -> (f64, f64) {
+    pub(crate) fn point(&self, number: u64) -> (f64, f64) {
         let (across, up) = (number % self.tilts, number / self.tilts);
         (0.1 + 2.9 * across as f64 / (self.tilts - 1) as f64, 8.0 * up as f64 / (self.spins - 1) as f64)
     }
 
     /// The ensemble with two members per point.
-    #[must_use]
-    pub fn ensemble(self) -> Ensemble<Top> {
+    pub(crate) fn ensemble(self) -> Ensemble<Top> {
         let make = move |member: &Member<'_>| {
             let (tilt, spin) = self.point(member.number() / 2);
             let tilt = tilt + if member.number() % 2 == 1 { APART } else { 0.0 };
@@ -59,12 +57,8 @@ impl Grid {
     }
 
     /// The exponent of each point, 1/s, if neither of its tops failed.
-    ///
-    /// # Errors
-    ///
-    /// A file that can't be read.
     #[allow(clippy::cast_precision_loss)] // steps
-    pub fn exponents(&self, ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<Option<f64>>, Mistake> {
+    pub(crate) fn exponents(&self, ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<Option<f64>>, Mistake> {
         let ends = usize::try_from(2 * self.tilts * self.spins)?;
         let (mut first, mut last) = (vec![[f64::NAN; 6]; ends], vec![[f64::NAN; 6]; ends]);
         for shard in store.shards(ensemble.fingerprint())? {

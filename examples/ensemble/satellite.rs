@@ -32,8 +32,7 @@ fn pointing(motion: &Motion<SO3, ()>) -> [f64; 3] {
 }
 
 /// The ensemble of this number of satellites.
-#[must_use]
-pub fn ensemble(members: u64) -> Ensemble<Satellite> {
+pub(crate) fn ensemble(members: u64) -> Ensemble<Satellite> {
     let make = |member: &liestep_ensemble::Member<'_>| {
         let near_one =
             |name: &str| Vector3::from([1, 2, 3].map(|axis| member.normal(&format!("{name} {axis}"), 1.0, 0.01)));
@@ -49,11 +48,7 @@ pub fn ensemble(members: u64) -> Ensemble<Satellite> {
 
 /// The angles from the nominal satellite's direction at each recorded time, s, in degrees: the deciles 0.1, 0.5 and 0.9
 /// of the members.
-///
-/// # Errors
-///
-/// A nominal satellite that can't be stepped, or a file that can't be read.
-pub fn spread(ensemble: &Ensemble<Satellite>, store: &Store) -> Result<Vec<(f64, [f64; 3])>, Mistake> {
+pub(crate) fn spread(ensemble: &Ensemble<Satellite>, store: &Store) -> Result<Vec<(f64, [f64; 3])>, Mistake> {
     let (stepper, mut nominal) = satellite([Vector3::repeat(1.0); 2])?;
     let mut angles: Vec<Vec<f64>> = Vec::new();
     let mut axes = vec![pointing(&nominal)];

@@ -22,13 +22,12 @@ const CENTRE: Vector3<f64> = Vector3::new(0.2, 0.0, 0.9); // m
 const ENERGY: f64 = 13.0; // J
 const VERTICAL: f64 = 3.0; // kg m²/s
 /// The largest possible `p_2` at this energy, kg m²/s.
-pub const LARGEST: f64 = 12.5;
+pub(crate) const LARGEST: f64 = 12.5;
 
 type Top = Stepper<Sum<PrincipalBody, Gravity>>;
 
 /// The ensemble of `members` motions, each of `steps` steps.
-#[must_use]
-pub fn ensemble(members: u64, steps: u64) -> Ensemble<Top> {
+pub(crate) fn ensemble(members: u64, steps: u64) -> Ensemble<Top> {
     let section = Section::new(Event::rising(), sections::plane(Vector3::y(), Vector3::z())).keep(
         ["t", "nutation", "p2"],
         |now: &Moment<'_, Top>| {
@@ -75,19 +74,15 @@ fn momentum(nutation: f64, across: f64) -> Option<Vector3<f64>> {
 
 /// A motion by its crossings.
 #[derive(Clone, Debug)]
-pub struct Orbit {
+pub(crate) struct Orbit {
     /// The energy error at the end, J.
-    pub off: f64,
+    pub(crate) off: f64,
     /// Nutation (rad) and `p_2` (kg m²/s) of each crossing.
-    pub points: Vec<[f64; 2]>,
+    pub(crate) points: Vec<[f64; 2]>,
 }
 
 /// The crossings and the energy error of each member.
-///
-/// # Errors
-///
-/// A file that can't be read.
-pub fn crossings(ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<Orbit>, Mistake> {
+pub(crate) fn crossings(ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<Orbit>, Mistake> {
     let mut found = Vec::new();
     for shard in store.shards(ensemble.fingerprint())? {
         let rows = shard.map_err(|fault| fault.to_string())?.rows;

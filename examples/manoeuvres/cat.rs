@@ -9,7 +9,8 @@ use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep_control::{Control, ControlPlan, Target};
 use nalgebra::{SVector, UnitQuaternion, Vector3};
 use workbench::args::Failure;
-use workbench::plot::{BLUE, Line, ORANGE, Panel, Vertical};
+use workbench::drawing::path;
+use workbench::plot::{BLUE, Line, ORANGE};
 
 use crate::{Drawn, Part, found, given, picture};
 
@@ -89,10 +90,9 @@ pub(crate) fn cat() -> Drawn {
     };
     let torques: Vec<[f64; 2]> = plan.inputs.iter().map(torques).collect();
     let lines = vec![Line { colour: BLUE, width: 4, points: wheels(&plan) }];
-    let (across, up, vertical) = ("first wheel, rad", "second wheel, rad", Vertical::Linear);
     let names = [("first", BLUE), ("second", ORANGE)];
     let parts = [
-        Part::Lines(Panel { title: "The wheels' turns", across, up, vertical, function: false, lines }, &[]),
+        Part::Lines(path("The wheels' turns", ["first wheel, rad", "second wheel, rad"], lines), &[]),
         given(("Torque on the wheels", "N m", &names), plan.stepper.step_size(), &torques),
     ];
     let below = "no angular momentum at any time; both wheels end where they began, and at rest";

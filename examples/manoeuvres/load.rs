@@ -7,7 +7,8 @@ use liestep::numbers::Entries as _;
 use liestep::{NonstandardInertia, SO3, Stepper, force, lagrangian};
 use liestep_control::{Control, Target};
 use nalgebra::{SVector, Vector3};
-use workbench::plot::{BLUE, Line, ORANGE, PURPLE, Panel, Vertical};
+use workbench::drawing::path;
+use workbench::plot::{BLUE, Line, ORANGE, PURPLE};
 
 use crate::{Drawn, Part, found, given, picture};
 
@@ -92,11 +93,10 @@ pub(crate) fn load() -> Drawn {
         [scalars[scalars.len() - 4], scalars[scalars.len() - 2]]
     };
     let numbers: Vec<[f64; 2]> = plan.inputs.iter().map(numbers).collect();
-    let (across, up, vertical) = ("aside, m", "up, m", Vertical::Linear);
     let names = [("thrust, N", BLUE), ("turning, rad/s²", ORANGE)];
     let parts = [
         Part::Lines(
-            Panel { title: "The ways of flyer, load and cable", across, up, vertical, function: false, lines },
+            path("The ways of flyer, load and cable", ["aside, m", "up, m"], lines),
             &[("flyer", BLUE), ("load", ORANGE)],
         ),
         given(("Rotors", "", &names), plan.stepper.step_size(), &numbers),

@@ -1,8 +1,8 @@
 //! Planned motions, and one that is estimated from its readings.
 //!
 //! ```text
-//! cargo run --release -p liestep-manoeuvres --example manoeuvres                       all of them
-//! cargo run --release -p liestep-manoeuvres --example manoeuvres -- slew sun           some
+//! cargo run --release -p liestep-examples --example manoeuvres                       all of them
+//! cargo run --release -p liestep-examples --example manoeuvres -- slew sun           some
 //! ```
 //!
 //! | | |

@@ -9,7 +9,8 @@ use liestep::motion::Plan;
 use liestep::{NonstandardInertia, SO3, Stepper};
 use liestep_control::{Control, ControlPlan, Cost, Target};
 use nalgebra::{UnitQuaternion, Vector3};
-use workbench::plot::{BLUE, GREEN, Line, ORANGE, Panel, Path, VERMILION, Vertical};
+use workbench::drawing::path;
+use workbench::plot::{BLUE, GREEN, Line, ORANGE, Path, VERMILION};
 
 use crate::{Drawn, Part, found, given, picture};
 
@@ -71,11 +72,10 @@ pub(crate) fn half_turn() -> Drawn {
         Line { colour: VERMILION, width: 4, points: vec![(0.0, 0.0), (0.0, most)] },
         Line { colour: BLUE, width: 4, points: polhode },
     ];
-    let (across, up, vertical) = ("Ω1, rad/s", "Ω3, rad/s", Vertical::Linear);
     let parts = [
         Part::Way(Path { title, colour: BLUE, width: 4, points: &tip, axis }),
         Part::Lines(
-            Panel { title: "Polhode", across, up, vertical, function: false, lines },
+            path("Polhode", ["Ω1, rad/s", "Ω3, rad/s"], lines),
             &[("shortest", BLUE), ("about the axis", VERMILION)],
         ),
         panel(plan.stepper.step_size(), &torques(&plan)),

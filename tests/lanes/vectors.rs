@@ -1,10 +1,10 @@
 //! The gain of wider vector registers: the same steps with those of the target, of AVX2 and of AVX-512.
 //!
 //! ```text
-//! cargo bench --bench vectors              fails if a gain is lost
-//! cargo bench --bench vectors -- native    builds itself for this machine, too, and fails if that is slower;
+//! cargo bench -p liestep-lanes --bench vectors              fails if a gain is lost
+//! cargo bench -p liestep-lanes --bench vectors -- native    builds itself for this machine, too, and fails if that is slower;
 //!                                          further words are options for the compiler, as -C target-feature=-avx512f
-//! cargo bench --bench vectors -- time      nothing but the nanoseconds that the others compare
+//! cargo bench -p liestep-lanes --bench vectors -- time      nothing but the nanoseconds that the others compare
 //! ```
 //!
 //! A loop of collocation that the compiler no longer vectorises, or a kernel that isn't inlined into the dispatched
@@ -15,15 +15,16 @@
 //! alone are eight steps of one.
 
 mod eight_tops;
+#[path = "../benches/kernels/kernel.rs"]
+mod kernel;
 
 use core::hint::black_box;
-use std::error::Error;
 use std::path::Path;
 use std::process::Command;
-use std::time::Instant;
+use std::rc::Rc;
 
 use liestep::delegate_plan;
-use liestep::mechanics::{DiscreteLagrangian, Effect, Group, Scalar, SceneVisitor};
+use liestep::mechanics::{self, DiscreteLagrangian, Effect, Scalar, SceneVisitor};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
 use liestep::motion::{Motion, Plan, StepReport, Summation};
 use liestep::numbers::{Real, Vectors};
@@ -32,9 +33,9 @@ use nalgebra::Vector3;
 use simba::simd::{AutoF64x4, AutoF64x8, WideF64x4};
 
 use eight_tops::{TOPS, Top, lanes, top};
+use kernel::{Effort, Failure, Group, Kernel, arguments, built, measure};
 
-const BATCH: u64 = 100;
-const ROUNDS: usize = 1000;
+const EFFORT: Effort = Effort { batch: 100, rounds: 1000, counted: 1000 };
 
 /// A plan with other registers: those of the target, four or eight.
 #[derive(Clone)]
@@ -52,7 +53,7 @@ impl<S: Effect, P: Plan<S>, const LEVEL: usize> Plan<S> for With<P, LEVEL> {
     }
 
     #[inline(always)]
-    fn step<M: Summation<Group<S>, S::Advected>>(
+    fn step<M: Summation<mechanics::Group<S>, S::Advected>>(
         &self,
         scene: &S,
         motion: &mut M,
@@ -62,7 +63,7 @@ impl<S: Effect, P: Plan<S>, const LEVEL: usize> Plan<S> for With<P, LEVEL> {
     }
 
     #[inline(always)]
-    fn run<M: Summation<Group<S>, S::Advected>>(
+    fn run<M: Summation<mechanics::Group<S>, S::Advected>>(
         &self,
         scene: &S,
         motion: &mut M,
@@ -77,24 +78,31 @@ impl<S: Effect, P: Plan<S>, const LEVEL: usize> Plan<S> for With<P, LEVEL> {
     }
 }
 
-/// A batch of steps.
-type Batch = Box<dyn FnMut()>;
-
-fn batch<S, P>(stepper: Stepper<S, P>, attitude: Group<S>, velocity: liestep::mechanics::Vector<S>) -> Batch
+/// Batches of steps, each from the start.
+fn batch<S, P>(
+    name: &str,
+    stepper: Stepper<S, P>,
+    attitude: mechanics::Group<S>,
+    velocity: mechanics::Vector<S>,
+) -> Kernel
 where
     S: Effect + 'static,
     P: Plan<S, Kept: 'static> + 'static,
 {
-    let start = stepper.start(attitude, velocity).expect("a usable start");
-    Box::new(move || {
-        let mut state = black_box(start);
-        stepper.run(&mut state, BATCH).expect("solvable steps");
-        black_box(state);
+    let stepper = Rc::new(stepper);
+    Kernel::new(name, move || {
+        let (stepper, start) = (Rc::clone(&stepper), stepper.start(attitude, velocity)?);
+        Ok(move |steps| {
+            let mut state = black_box(start);
+            stepper.run(&mut state, u64::from(steps))?;
+            black_box(state);
+            Ok(0)
+        })
     })
 }
 
-/// The batches of a stepper with each kind of registers.
-fn levels<S, P>(stepper: &Stepper<S, P>, attitude: Group<S>, velocity: liestep::mechanics::Vector<S>) -> [Batch; 3]
+/// A stepper with each kind of registers.
+fn levels<S, P>(stepper: &Stepper<S, P>, attitude: mechanics::Group<S>, velocity: mechanics::Vector<S>) -> [Kernel; 3]
 where
     S: Effect + Clone + 'static,
     P: Plan<S, Kept: 'static> + Clone + 'static,
@@ -102,23 +110,23 @@ where
     let with = || (stepper.scene().clone(), stepper.plan().clone());
     let ((a, p), (b, q), (c, r)) = (with(), with(), with());
     [
-        batch(Stepper::with_plan(a, With::<P, 0>(p)).expect("a scene"), attitude, velocity),
-        batch(Stepper::with_plan(b, With::<P, 1>(q)).expect("a scene"), attitude, velocity),
-        batch(Stepper::with_plan(c, With::<P, 2>(r)).expect("a scene"), attitude, velocity),
+        batch("as compiled", Stepper::with_plan(a, With::<P, 0>(p)).expect("a scene"), attitude, velocity),
+        batch("four", Stepper::with_plan(b, With::<P, 1>(q)).expect("a scene"), attitude, velocity),
+        batch("eight", Stepper::with_plan(c, With::<P, 2>(r)).expect("a scene"), attitude, velocity),
     ]
 }
 
 /// The kernels with each kind of registers, and the least gain of each over the one before.
 struct Row {
     name: String,
-    batches: [Batch; 3],
+    kernels: [Kernel; 3],
     least: [f64; 2],
 }
 
 fn collocation<const PAIRS: usize>(least: [f64; 2]) -> Row {
     let (scene, attitude, velocity) = top::<f64>(3);
     let stepper = Stepper::collocated::<PAIRS>(scene, 0.1).expect("a usable step");
-    Row { name: format!("Gauss, {} stages", 2 * PAIRS), batches: levels(&stepper, attitude, velocity), least }
+    Row { name: format!("Gauss, {} stages", 2 * PAIRS), kernels: levels(&stepper, attitude, velocity), least }
 }
 
 /// One top by splittings: registers of four gain, by 1.07 to 1.17 where this was written. Registers of eight, which
@@ -128,7 +136,7 @@ fn one() -> Vec<Row> {
     let body = ExactBody::new(&NonstandardInertia::from(scene.J_d).to_inertia());
     let split = Stepper::split(scene.clone(), 0.05, body, SplittingScheme::FORCE_GRADIENT_2).expect("a usable step");
     let processed = Stepper::processed(scene, 0.05, body, ProcessedScheme::SIX_A).expect("a usable step");
-    let row = |way: &str, batches| Row { name: format!("one top: {way}"), batches, least: [1.0, 0.0] };
+    let row = |way: &str, kernels| Row { name: format!("one top: {way}"), kernels, least: [1.0, 0.0] };
     vec![
         row("force gradient 2-4", levels(&split, attitude, velocity)),
         row("processed 3-6 a", levels(&processed, attitude, velocity)),
@@ -144,7 +152,7 @@ where
     let (scene, attitude, velocity) = lanes::<T>(0);
     let h = || nalgebra::convert::<f64, T>(0.05);
     let body = ExactBody::new(&NonstandardInertia::from(scene.J_d).to_inertia());
-    let row = |way: &str, batches, gain| Row { name: format!("{name}: {way}"), batches, least: [gain, 0.0] };
+    let row = |way: &str, kernels, gain| Row { name: format!("{name}: {way}"), kernels, least: [gain, 0.0] };
     let declared = Stepper::new(scene.clone(), h()).expect("a usable step");
     let composed = Stepper::composed(scene.clone(), h(), CompositionScheme::KAHAN_LI_6).expect("a usable step");
     let split = |scheme| Stepper::split(scene.clone(), h(), body, scheme).expect("a usable step");
@@ -156,20 +164,6 @@ where
         row("force gradient 5-6", levels(&split(SplittingScheme::FORCE_GRADIENT_5), attitude, velocity), gain),
         row("processed 3-6 a", levels(&processed, attitude, velocity), gain),
     ]
-}
-
-/// The time of the fastest batch of each kernel, ns a step; they take turns.
-#[allow(clippy::cast_precision_loss)] // a hundred
-fn fastest<const N: usize>(batches: &mut [Batch; N]) -> [f64; N] {
-    let mut best = [f64::INFINITY; N];
-    for _ in 0..ROUNDS {
-        for (best, batch) in best.iter_mut().zip(batches.iter_mut()) {
-            let start = Instant::now();
-            batch();
-            *best = best.min(start.elapsed().as_secs_f64() * 1e9 / BATCH as f64);
-        }
-    }
-    best
 }
 
 fn rows() -> Vec<Row> {
@@ -190,11 +184,11 @@ fn has(level: usize) -> bool {
 }
 
 /// Prints a table of the gains; fails if one is lost.
-fn gains() -> Result<(), Box<dyn Error>> {
+fn gains() -> Result<(), Failure> {
     println!("{:<40}{:>12}{:>12}{:>12}{:>8}{:>8}", "ns a step", "as compiled", "four", "eight", "gain", "gain");
     let mut lost = Vec::new();
-    for Row { name, mut batches, least } in rows() {
-        let [two, four, eight] = fastest(&mut batches);
+    for Row { name, kernels, least } in rows() {
+        let [two, four, eight] = fastest(kernels)?;
         let gains = [two / four, four / eight];
         println!("{name:<40}{two:>12.1}{four:>12.1}{eight:>12.1}{:>8.2}{:>8.2}", gains[0], gains[1]);
         // A program that is compiled for wider registers has no gain.
@@ -205,41 +199,56 @@ fn gains() -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    alone();
+    measure(&[], vec![alone()], &[])?;
     if lost.is_empty() { Ok(()) } else { Err(lost.join("; ").into()) }
 }
 
+/// The times of these kernels in turns.
+fn fastest<const N: usize>(kernels: [Kernel; N]) -> Result<[f64; N], Failure> {
+    let times = Group::new("", EFFORT, kernels).fastest()?;
+    Ok(core::array::from_fn(|k| times[k]))
+}
+
 /// The exact motion of a body in eight lanes, compared with eight single bodies.
-fn alone() {
+fn alone() -> Group {
     let wide = lanes::<AutoF64x8>(0);
     let scheme = SplittingScheme::FORCE_GRADIENT_5;
     let body = ExactBody::new(&NonstandardInertia::from(wide.0.J_d).to_inertia());
     let stepper = Stepper::split(wide.0, nalgebra::convert(0.05), body, scheme).expect("a usable step");
-    let together = batch(stepper, wide.1, wide.2);
-    let mut all: Vec<Batch> = (0..TOPS)
-        .map(|number| {
+    let apart = Kernel::new("eight alone", move || {
+        let one = |number| {
             let (scene, attitude, velocity) = top::<f64>(number);
             let body = ExactBody::new(&NonstandardInertia::from(scene.J_d).to_inertia());
-            batch(Stepper::split(scene, 0.05, body, scheme).expect("a usable step"), attitude, velocity)
+            let stepper = Stepper::split(scene, 0.05, body, scheme)?;
+            let start = stepper.start(attitude, velocity)?;
+            Ok::<_, Failure>((stepper, start))
+        };
+        let all = (0..TOPS).map(one).collect::<Result<Vec<_>, _>>()?;
+        Ok(move |steps| {
+            for (stepper, start) in &all {
+                let mut state = black_box(*start);
+                stepper.run(&mut state, u64::from(steps))?;
+                black_box(state);
+            }
+            Ok(0)
         })
-        .collect();
-    let apart: Batch = Box::new(move || all.iter_mut().for_each(|batch| batch()));
-    let [apart, together] = fastest(&mut [apart, together]);
-    println!("exact motion, eight alone {apart:.1}, in lanes {together:.1}: {:.2}", apart / together);
+    });
+    Group::new("exact motion", EFFORT, [apart, batch("in lanes", stepper, wide.1, wide.2)])
 }
 
 /// Prints the nanoseconds a step of each kernel with its own choice of registers, a line each.
-fn times() {
-    for Row { name, batches, .. } in rows() {
-        let [_, four, eight] = batches;
+fn times() -> Result<(), Failure> {
+    for Row { name, kernels, .. } in rows() {
+        let [_, four, eight] = kernels;
         let is_collocation = name.starts_with("Gauss, 8");
-        let [time] = fastest(&mut [if is_collocation { eight } else { four }]);
+        let [time] = fastest([if is_collocation { eight } else { four }])?;
         println!("{time:.2} {name}");
     }
+    Ok(())
 }
 
 /// The times of the program at this path.
-fn times_of(program: &Path) -> Result<Vec<(f64, String)>, Box<dyn Error>> {
+fn times_of(program: &Path) -> Result<Vec<(f64, String)>, Failure> {
     let output = Command::new(program).arg("time").output()?;
     let lines = String::from_utf8(output.stdout)?;
     let line = |line: &str| -> Option<(f64, String)> {
@@ -250,16 +259,10 @@ fn times_of(program: &Path) -> Result<Vec<(f64, String)>, Box<dyn Error>> {
 }
 
 /// Compares this program with itself compiled for this machine; fails if that is slower.
-fn native(flags: &[String]) -> Result<(), Box<dyn Error>> {
+fn native(flags: &[String]) -> Result<(), Failure> {
     let flags = format!("-C target-cpu=native {}", flags.join(" "));
-    let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["bench", "--no-run", "--bench", "vectors", "--target-dir", "target/native"]);
-    let output = cargo.env("RUSTFLAGS", flags).output()?;
-    let report = String::from_utf8_lossy(&output.stderr);
-    let executable = report.lines().find_map(|line| line.trim().strip_prefix("Executable"));
-    let place = executable.and_then(|line| line.split_once('(')?.1.strip_suffix(')'));
-    let place = place.ok_or_else(|| format!("nothing was built: {report}"))?;
-    let programs = [std::env::current_exe()?, place.into()];
+    let place = built("vectors", &["--target-dir", "target/native"], Some(&flags))?;
+    let programs = [std::env::current_exe()?, place];
     let mut best: [Vec<(f64, String)>; 2] = Default::default();
     for _ in 0..3 {
         for (best, program) in best.iter_mut().zip(&programs) {
@@ -289,16 +292,12 @@ fn native(flags: &[String]) -> Result<(), Box<dyn Error>> {
 /// A ratio up to this is noise.
 const SLOWER: f64 = 1.1;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    // Cargo adds `--bench`.
-    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+fn main() -> Result<(), Failure> {
+    let words = arguments();
     match words.first().map(String::as_str) {
         None => gains(),
         Some("native") => native(&words[1..]),
-        Some("time") => {
-            times();
-            Ok(())
-        }
+        Some("time") => times(),
         Some(other) => Err(format!("`native`, `time` or nothing, not {other}").into()),
     }
 }

@@ -1,12 +1,11 @@
 //! A declaration that is read while a program runs, beside the compiled one:
 //! `cargo bench -p liestep-machine --features cranelift`.
 //!
-//! Times of a step, in those of the compiled step: measured in turns within one run, the fastest of all batches; the
-//! time from a text to the first step, and from each text of the repository to its machine code; `-- instructions`
-//! counts those of a step of (3.13), by valgrind.
+//! Times of a step, in those of the compiled step; the time from a text to the first step, and from each text of the
+//! repository to its machine code; `-- instructions` counts those of a step, by valgrind.
 
-#[path = "../../../tests/benches/counting.rs"]
-mod counting;
+#[path = "../../../tests/benches/kernels/kernel.rs"]
+mod kernel;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -24,130 +23,88 @@ use liestep_machine::Machine;
 use nalgebra::Vector3;
 use simba::simd::AutoF64x8;
 
-use counting::{Uncounted, instructions};
+use kernel::{Effort, Failure, Group, Kernel, arguments, measure};
 
-const STEPS: u32 = 1_000;
-const ROUNDS: usize = 200;
 const STEP: f64 = 0.01;
 const LANES: u32 = 8;
+const EFFORT: Effort = Effort { batch: 1_000, rounds: 200, counted: 10_000 };
 
 type LateTop<B> = Late<SO3, Vector3<f64>, WithKinetic, B>;
 
-fn main() -> Result<(), Uncounted> {
-    // Cargo adds `--bench`.
-    let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| argument != "--bench").collect();
+fn main() -> Result<(), Failure> {
+    let words = arguments();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let (rho, up) = (Vector3::new(0.1, -0.2, 0.4), Vector3::z());
-    let inertia = Inertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.0)).expect("an inertia");
+    let inertia = Inertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.0))?;
     let fourth = FourthOrderTop { J: inertia, weight: 1.5 * 9.81, rho, up };
     let full = FullTop { J_d: inertia.to_nonstandard(), m: 1.5, g: 9.81, rho, up };
-    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["count", "fourth", kind, steps] => return count(fourth, kind, steps.parse()?),
-        ["count", _, kind, steps] => return count(full, kind, steps.parse()?),
-        ["instructions"] => {
-            for (scene, name) in [("full", "(3.13), any inertia"), ("fourth", "of the fourth order")] {
-                for kind in KINDS {
-                    let steps = instructions(&std::env::current_exe()?, &["count", scene, kind], 10 * STEPS)?;
-                    println!("{name:22} {kind:22}{steps:8.0} instructions a step");
-                }
-            }
-            return Ok(());
-        }
-        _ => first_steps(),
+    let groups = vec![
+        Group::new("(3.13), any inertia", EFFORT, kernels(full)?),
+        Group::new("of the fourth order", EFFORT, kernels(fourth)?),
+    ];
+    if words.is_empty() {
+        first_steps();
     }
-    compare("(3.13), any inertia", full);
-    compare("of the fourth order", fourth);
-    texts();
+    measure(&[], groups, &words)?;
+    if words.is_empty() {
+        texts();
+    }
     Ok(())
 }
 
-const KINDS: [&str; 6] =
-    ["compiled", "machine code", "specialised", "interpreted", "in lanes of eight", "machine code in lanes"];
-
-/// Runs steps of one kind.
-fn count<S>(scene: S, kind: &str, steps: u32) -> Result<(), Uncounted>
+/// The declaration compiled, and read in each way.
+fn kernels<S>(scene: S) -> Result<[Kernel; 6], Failure>
 where
-    S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
+    S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone + 'static,
 {
     let machine: LateTop<Machine> = Late::like(&scene)?;
     let interpreted: LateTop<Interpreter> = Late::like(&scene)?;
-    let mut run = match kind {
-        "compiled" => alone(scene),
-        "machine code" => alone(machine),
-        "specialised" => alone(machine.specialised()),
-        "interpreted" => alone(interpreted),
-        "in lanes of eight" => in_lanes(&interpreted),
-        _ => in_lanes(&machine),
-    };
-    // The lanes share the number of steps.
-    let often = if kind.contains("lanes") { steps / STEPS / LANES } else { steps / STEPS };
-    (0..often).for_each(|_| {
-        run();
-    });
-    Ok(())
+    Ok([
+        alone("compiled", scene),
+        alone("machine code", machine.clone()),
+        alone("specialised", machine.clone().specialised()),
+        alone("interpreted", interpreted.clone()),
+        in_lanes("in lanes of eight", interpreted),
+        in_lanes("machine code in lanes", machine),
+    ])
 }
 
-fn started<S>(scene: S) -> (Stepper<S>, StateOf<S>)
+fn started<S>(scene: S) -> Result<(Stepper<S>, StateOf<S>), Failure>
 where
     S: Regular<Scalar = f64, Group = SO3>,
 {
-    let stepper = Stepper::new(scene, STEP).expect("a stepper");
-    let state = stepper.start(SO3::exp(Vector3::new(0.8, 0.0, 0.0)), Vector3::new(0.5, 2.0, 6.0)).expect("a start");
-    (stepper, state)
+    let stepper = Stepper::new(scene, STEP)?;
+    let state = stepper.start(SO3::exp(Vector3::new(0.8, 0.0, 0.0)), Vector3::new(0.5, 2.0, 6.0))?;
+    Ok((stepper, state))
 }
 
-/// The time of a step of one of several scenes, ns.
-fn ns(clock: Instant, scenes: u32) -> f64 {
-    clock.elapsed().as_secs_f64() * 1e9 / f64::from(STEPS) / f64::from(scenes)
-}
-
-fn alone<'a, S: Regular<Scalar = f64, Group = SO3> + 'a>(scene: S) -> Box<dyn FnMut() -> f64 + 'a>
-where
-    StateOf<S>: 'a,
-{
-    let (stepper, mut state) = started(scene);
-    Box::new(move || {
-        let clock = Instant::now();
-        for _ in 0..STEPS {
-            stepper.step(&mut state).expect("a step");
-        }
-        black_box(&state);
-        ns(clock, 1)
+fn alone<S: Regular<Scalar = f64, Group = SO3> + Clone + 'static>(name: &str, scene: S) -> Kernel {
+    Kernel::new(name, move || {
+        let (stepper, mut state) = started(scene.clone())?;
+        Ok(move |steps| {
+            for _ in 0..steps {
+                stepper.step(&mut state)?;
+            }
+            black_box(&state);
+            Ok(0)
+        })
     })
 }
 
-fn in_lanes<'a, S>(scene: &S) -> Box<dyn FnMut() -> f64 + 'a>
+/// Eight scenes, which share the number of steps.
+fn in_lanes<S>(name: &str, scene: S) -> Kernel
 where
-    S: Regular<Scalar = f64, Group = SO3> + Clone,
-    Stepper<S>: Batchable<AutoF64x8> + Integrator<State = StateOf<S>> + 'a,
+    S: Regular<Scalar = f64, Group = SO3> + Clone + 'static,
+    Stepper<S>: Batchable<AutoF64x8> + Integrator<State = StateOf<S>> + 'static,
 {
-    let bodies: Vec<_> = (0..LANES).map(|_| started(scene.clone())).collect();
-    let mut batch = Batch::<AutoF64x8, _>::new(&bodies).expect("they share a text");
-    Box::new(move || {
-        let clock = Instant::now();
-        batch.run(u64::from(STEPS));
-        ns(clock, LANES)
+    Kernel::new(name, move || {
+        let bodies = (0..LANES).map(|_| started(scene.clone())).collect::<Result<Vec<_>, _>>()?;
+        let mut batch = Batch::<AutoF64x8, _>::new(&bodies)?;
+        Ok(move |steps| {
+            batch.run(u64::from(steps / LANES));
+            Ok(0)
+        })
     })
-}
-
-fn compare<S>(name: &str, scene: S)
-where
-    S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
-{
-    let machine: LateTop<Machine> = Late::like(&scene).expect("a declaration");
-    let interpreted: LateTop<Interpreter> = Late::like(&scene).expect("a declaration");
-    let lanes = [in_lanes(&interpreted), in_lanes(&machine)];
-    let specialised = machine.clone().specialised();
-    let mut kinds: Vec<_> = [alone(scene), alone(machine), alone(specialised), alone(interpreted)].into();
-    kinds.extend(lanes);
-    let mut least = [f64::INFINITY; KINDS.len()];
-    for _ in 0..ROUNDS {
-        for (least, kind) in least.iter_mut().zip(&mut kinds) {
-            *least = least.min(kind());
-        }
-    }
-    for (kind, ns) in KINDS.iter().zip(least) {
-        println!("{name:22} {kind:22}{ns:8.0} ns a step, {:.2} times", ns / least[0]);
-    }
 }
 
 /// Each text is derived anew, as it differs in its name.
@@ -160,7 +117,7 @@ fn first_steps() {
         let numbers: [(&str, &[f64]); 5] =
             [("J_d", &inertia), ("m", &[1.5]), ("g", &[9.81]), ("rho", &[0.1, 0.0, 0.4]), ("up", &[0.0, 0.0, 1.0])];
         let late = numbers.iter().try_fold(late, |late, (name, value)| late.with(name, value)).expect("numbers");
-        let (stepper, mut state) = started(late);
+        let (stepper, mut state) = started(late).expect("a start");
         stepper.step(&mut state).expect("a step");
         clock.elapsed().as_secs_f64() * 1e3
     });

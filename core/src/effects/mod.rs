@@ -14,7 +14,7 @@
 //! | [`Rotor`] | none of its own: it shifts the momentum, `JΩ + s` |
 //!
 //! The body can be discretised in several ways, which differ in order, in cost and in how far a body may turn in a
-//! step; `cargo bench --bench scenes` has the costs.
+//! step; `cargo bench -p liestep-benches -- scenes` has the costs.
 //!
 //! | kinetic term | order of a free body | its energy | a step has a solution up to `hΩ` = | a spin turns too far at `hΩ` = 0.1, 1 |
 //! |---|---|---|---|---|

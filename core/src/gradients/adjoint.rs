@@ -214,7 +214,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
     /// `cost` returns the derivatives of `c_n` by each state, and is called from `n = steps` to `n = 0`. If a cost
     /// depends on the parameters directly, the caller has to add that derivative. A further parameter takes a few
     /// operations more: for a heavy top the whole gradient takes two plain steps for each step
-    /// (`cargo bench --bench gradients`). [The chapter](crate::guide::gradients) has an example.
+    /// (`cargo bench -p liestep-benches -- gradients`). [The chapter](crate::guide::gradients) has an example.
     ///
     /// # Errors
     ///

@@ -12,9 +12,9 @@
 //! The word `gradients` in a declaration adds them; the effects of the library have it, except for the bodies of fourth
 //! and sixth order. A scene without it has no code for derivatives. They work with a scene's own step, on any group and
 //! with forces, with compositions, and with splittings, processed ones too, whose flow is declared or exact.
-//! `cargo bench --bench gradients` has the costs. In a splitting whose symmetric body turns about its axis once a step,
-//! a step with derivatives makes its drifts twice. One of a processed splitting makes both ends of the processor, as
-//! the derivatives are those of the processed state; the adjoint makes an end for the cost of a state, unless the cost
+//! `cargo bench -p liestep-benches -- gradients` has the costs. In a splitting whose symmetric body turns about its
+//! axis once a step, a step with derivatives makes its drifts twice. One of a processed splitting makes both ends of
+//! the processor, as the derivatives are those of the processed state; the adjoint makes an end for the cost of a state, unless the cost
 //! is zero.
 //!
 //! # Coordinates

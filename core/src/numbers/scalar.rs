@@ -33,7 +33,7 @@ roots!();
 /// machine and uses them, up to [four `f64`](crate::numbers::Vectors::Four) a register: a program needn't be compiled
 /// for one machine. That holds for lanes which are arrays, such as `AutoF64x8`. The `Wide` types of simba use the
 /// instructions that the program is compiled for, two `f64` a register on x86-64 by default.
-/// `cargo bench --bench lanes` and `--bench vectors` measure both.
+/// `cargo bench -p liestep-lanes --bench lanes` and `--bench vectors` measure both.
 ///
 /// With `-C target-cpu=native` on a machine with AVX-512, lanes that are arrays are two to three times slower, probably
 /// as the compiler then fills registers of eight `f64` from parts of different arrays. `-C target-feature=-avx512f`

@@ -19,7 +19,7 @@ use nalgebra::SimdValue as _;
 
 /// A plan whose sums are compensated, by [`Stepper::compensated`].
 ///
-/// The step is the same map; only its rounding differs. `cargo bench` measures its cost.
+/// The step is the same map; only its rounding differs. `cargo bench -p liestep-benches -- heavy-top` measures its cost.
 ///
 /// # Examples
 ///

@@ -394,7 +394,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
     /// A single body is faster by instructions with three operands, which save copies. A symmetric one, whose turn is
     /// short, is faster by more registers, too. For other bodies the widest registers are slower: the entries of an
     /// increment are packed and unpacked, and the next kick waits for that. Lanes in arrays are slower with the widest,
-    /// too. `cargo bench --bench vectors` compares all three.
+    /// too. `cargo bench -p liestep-lanes --bench vectors` compares all three.
     const VECTORS: Vectors =
         if <Scalar<S> as SimdValue>::LANES == 1 && K::OPERATIONS_OF_SPIN > 0 { Vectors::Eight } else { Vectors::Four };
 

@@ -1,7 +1,6 @@
 //! The time for ten seconds of a symmetric top by splittings in lanes on one core, beside a Taylor integrator's
 //! batches.
 
-use std::error::Error;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
 use std::time::Instant;
@@ -9,15 +8,17 @@ use std::time::Instant;
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Sum};
 use liestep::methods::{ProcessedScheme, ProcessedSplitting, Splitting, SplittingScheme, SymmetricBody};
-use liestep::motion::{Batch, Batchable, Integrator, Motion};
-use liestep::{SO3, Stepper};
+use liestep::motion::{Batch, Batchable, Integrator, Plan};
+use liestep::{StateOf, Stepper};
+use liestep_refinement::{Measurement, Refinement};
 use nalgebra::{UnitQuaternion, Vector3};
 use simba::simd::AutoF64x8;
 
-type Failure = Box<dyn Error>;
+use crate::kernel::Failure;
+
 type Scene = Sum<PrincipalBody, Gravity>;
 /// A stepper and its initial state.
-type Top<I> = (I, <I as Integrator>::State);
+type Top<P> = (Stepper<Scene, P>, StateOf<Scene, P>);
 
 const TOPS: u32 = 64;
 const LANES: usize = 8;
@@ -56,47 +57,15 @@ fn body(number: u32) -> Body {
     }
 }
 
-/// The coefficients of a splitting, as they are or with a processor.
-trait Scheme: Copy {
-    type Stepper: Batchable<AutoF64x8> + Integrator<Motion = Motion<SO3, ((), Vector3<f64>)>>;
-
-    fn name(self) -> &'static str;
-
-    fn top(self, body: &Body, h: f64) -> Result<Top<Self::Stepper>, Failure>;
-}
-
-impl Scheme for SplittingScheme {
-    type Stepper = Stepper<Scene, Splitting<Scene, SymmetricBody>>;
-
-    fn name(self) -> &'static str {
-        SplittingScheme::name(&self)
-    }
-
-    fn top(self, body: &Body, h: f64) -> Result<Top<Self::Stepper>, Failure> {
-        let stepper = Stepper::split(body.scene()?, h, body.flow()?, self)?;
-        let state = stepper.start(body.attitude, body.velocity)?;
-        Ok((stepper, state))
-    }
-}
-
-impl Scheme for ProcessedScheme {
-    type Stepper = Stepper<Scene, ProcessedSplitting<Scene, SymmetricBody>>;
-
-    fn name(self) -> &'static str {
-        ProcessedScheme::name(&self)
-    }
-
-    fn top(self, body: &Body, h: f64) -> Result<Top<Self::Stepper>, Failure> {
-        let stepper = Stepper::processed(body.scene()?, h, body.flow()?, self)?;
-        let state = stepper.start(body.attitude, body.velocity)?;
-        Ok((stepper, state))
-    }
-}
-
 impl Body {
     fn scene(&self) -> Result<Scene, Failure> {
         let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(self.moments)? };
         Ok(body + Gravity { m: 1.0, g: 9.81, rho: Vector3::z() * self.rho, up: Vector3::z() })
+    }
+
+    fn started<P: Plan<Scene>>(&self, stepper: Stepper<Scene, P>) -> Result<Top<P>, Failure> {
+        let state = stepper.start(self.attitude, self.velocity)?;
+        Ok((stepper, state))
     }
 
     fn flow(&self) -> Result<SymmetricBody, Failure> {
@@ -104,16 +73,19 @@ impl Body {
     }
 }
 
-fn tops<S: Scheme>(scheme: S, steps: u32) -> Result<Vec<Top<S::Stepper>>, Failure> {
-    (0..TOPS).map(|number| scheme.top(&body(number), TIME / f64::from(steps))).collect()
-}
-
 /// The vertical and the velocity in the body frame.
 type End = [Vector3<f64>; 2];
 
 /// The ends of all tops, run in lanes, and the time for a top, s.
-fn ends<S: Scheme>(scheme: S, steps: u32, repeated: usize) -> Result<(Vec<End>, f64), Failure> {
-    let tops = tops(scheme, steps)?;
+fn ends<P: Plan<Scene>>(
+    top: &impl Fn(&Body, f64) -> Result<Top<P>, Failure>,
+    steps: u32,
+    repeated: usize,
+) -> Result<(Vec<End>, f64), Failure>
+where
+    Stepper<Scene, P>: Batchable<AutoF64x8> + Integrator<State = StateOf<Scene, P>>,
+{
+    let tops = (0..TOPS).map(|number| top(&body(number), TIME / f64::from(steps))).collect::<Result<Vec<_>, _>>()?;
     let (mut ends, mut time) = (Vec::new(), 0.0);
     for eight in tops.chunks(LANES) {
         let mut fastest = f64::INFINITY;
@@ -134,6 +106,18 @@ fn ends<S: Scheme>(scheme: S, steps: u32, repeated: usize) -> Result<(Vec<End>, 
     Ok((ends, time / f64::from(TOPS)))
 }
 
+/// The tops of a splitting.
+fn split(scheme: SplittingScheme) -> impl Fn(&Body, f64) -> Result<Top<Splitting<Scene, SymmetricBody>>, Failure> {
+    move |body, h| body.started(Stepper::split(body.scene()?, h, body.flow()?, scheme)?)
+}
+
+/// The tops of a splitting with a processor.
+fn processed(
+    scheme: ProcessedScheme,
+) -> impl Fn(&Body, f64) -> Result<Top<ProcessedSplitting<Scene, SymmetricBody>>, Failure> {
+    move |body, h| body.started(Stepper::processed(body.scene()?, h, body.flow()?, scheme)?)
+}
+
 fn error(ends: &[End], exact: &[End]) -> f64 {
     let squares = ends.iter().zip(exact).map(|([w, velocity], [exact_w, exact_velocity])| {
         (w - exact_w).norm_squared() + (velocity - exact_velocity).norm_squared() / exact_velocity.norm_squared()
@@ -141,29 +125,24 @@ fn error(ends: &[End], exact: &[End]) -> f64 {
     (squares.sum::<f64>() / f64::from(TOPS)).sqrt()
 }
 
-/// The least time to an error, interpolated linearly between the runs on logarithmic axes.
-fn cost(runs: &[(f64, f64)], wanted: f64) -> f64 {
-    let exact = runs.iter().filter(|(error, _)| *error <= wanted).map(|(_, time)| *time);
-    let between = runs.windows(2).filter(|pair| pair[0].0 > wanted && wanted >= pair[1].0).map(|pair| {
-        let [(coarse, cheap), (fine, dear)] = [pair[0], pair[1]];
-        cheap * (dear / cheap).powf((coarse / wanted).ln() / (coarse / fine).ln())
-    });
-    exact.chain(between).fold(f64::INFINITY, f64::min)
-}
-
-/// Replaces the best costs, µs a top, by those of these schemes if they are lower.
-fn compare<S: Scheme>(schemes: &[S], exact: &[End], best: &mut [(f64, &'static str); 2]) -> Result<(), Failure> {
-    for &scheme in schemes {
-        let run = |steps| -> Result<_, Failure> {
-            let (ends, time) = ends(scheme, steps, REPEATED)?;
-            Ok((error(&ends, exact), time * 1e6))
-        };
-        let runs = STEPS.into_iter().map(run).collect::<Result<Vec<_>, _>>()?;
-        for (best, wanted) in best.iter_mut().zip(ERRORS) {
-            let cost = cost(&runs, wanted);
-            if cost < best.0 {
-                *best = (cost, scheme.name());
-            }
+/// Replaces the best costs, µs a top, by those of this scheme if they are lower.
+fn compare<P: Plan<Scene>>(
+    (name, top): (&'static str, impl Fn(&Body, f64) -> Result<Top<P>, Failure>),
+    exact: &[End],
+    best: &mut [(f64, &'static str); 2],
+) -> Result<(), Failure>
+where
+    Stepper<Scene, P>: Batchable<AutoF64x8> + Integrator<State = StateOf<Scene, P>>,
+{
+    let run = |steps| -> Result<_, Failure> {
+        let (ends, time) = ends(&top, steps, REPEATED)?;
+        let (step, error) = (TIME / f64::from(steps), error(&ends, exact));
+        Ok(Measurement { step, error, iterations: None, seconds: Some(time * 1e6) })
+    };
+    let runs = STEPS.into_iter().map(run).collect::<Result<Refinement, _>>()?;
+    for (best, wanted) in best.iter_mut().zip(ERRORS) {
+        if let Some(cost) = runs.seconds_to(wanted).filter(|cost| *cost < best.0) {
+            *best = (cost, name);
         }
     }
     Ok(())
@@ -172,7 +151,7 @@ fn compare<S: Scheme>(schemes: &[S], exact: &[End], best: &mut [(f64, &'static s
 /// The times by `with_heyoka.py`, if Python has heyoka.
 fn theirs(exact: &[End]) -> Result<Option<[f64; 2]>, Failure> {
     let mut python = Command::new("python3");
-    python.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/benches/with_heyoka.py"));
+    python.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/with_heyoka.py"));
     // Without Python there is no heyoka either.
     let Ok(mut child) = python.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn() else { return Ok(None) };
     let mut lines = String::new();
@@ -195,16 +174,21 @@ fn theirs(exact: &[End]) -> Result<Option<[f64; 2]>, Failure> {
 
 pub(crate) fn splittings() -> Result<(), Failure> {
     const FINE: u32 = 2_000;
-    let (exact, _) = ends(SplittingScheme::NYSTROM_14, FINE, 1)?;
-    let (finer, _) = ends(SplittingScheme::NYSTROM_14, 2 * FINE, 1)?;
+    let fine = split(SplittingScheme::NYSTROM_14);
+    let (exact, _) = ends(&fine, FINE, 1)?;
+    let (finer, _) = ends(&fine, 2 * FINE, 1)?;
     println!(
         "{TOPS} symmetric tops, {TIME} s, one core; what they are compared with is off by {:.0e}",
         error(&exact, &finer)
     );
     let (mut own, mut others) = ([(f64::INFINITY, ""); 2], [f64::INFINITY; 2]);
     for _ in 0..TURNS {
-        compare(&SCHEMES, &exact, &mut own)?;
-        compare(&ProcessedScheme::ALL, &exact, &mut own)?;
+        for scheme in SCHEMES {
+            compare((scheme.name(), split(scheme)), &exact, &mut own)?;
+        }
+        for scheme in ProcessedScheme::ALL {
+            compare((scheme.name(), processed(scheme)), &exact, &mut own)?;
+        }
         if let Some(found) = theirs(&exact)? {
             others.iter_mut().zip(found).for_each(|(other, found)| *other = other.min(found));
         }

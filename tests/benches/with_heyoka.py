@@ -1,7 +1,6 @@
 """What the Taylor integrator heyoka takes for ten seconds of symmetric tops, in batches of four, µs a top.
 
-Called by `cargo bench -p liestep-ensemble --bench steps -- splittings`, which gives the tops and where they end, a line
-for each: two moments, weight times distance, quaternion, momentum, vertical and velocity at the end. Without the
+Called by `cargo bench -p liestep-benches -- splittings`, which gives the tops and where they end, a line for each: two moments, weight times distance, quaternion, momentum, vertical and velocity at the end. Without the
 compilation of the Taylor series; of repeated runs the fastest counts.
 """
 

@@ -9,10 +9,14 @@ use liestep::{NonstandardInertia, SO3, Stepper};
 use liestep_control::{Control, Cost, Target};
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::kernel::Failure;
+use crate::most_memory;
+
+/// Prints the searches with these numbers of steps, or all.
 #[allow(clippy::cast_precision_loss)] // small counts
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+pub(crate) fn print(words: &[&str]) -> Result<(), Failure> {
     let tasks = [(50_u32, 1.0), (200, 1.0), (100, 0.0), (1_000, 0.0), (10_000, 0.0), (100_000, 0.0)];
-    let only: Vec<u32> = std::env::args().filter_map(|argument| argument.parse().ok()).collect();
+    let only = words.iter().map(|word| word.parse()).collect::<Result<Vec<u32>, _>>()?;
     for (steps, time) in tasks.into_iter().filter(|(steps, _)| only.is_empty() || only.contains(steps)) {
         let (moments, angles) =
             if time > 0.0 { ([1.0; 3], [0.0, 0.0, PI]) } else { ([1.0, 2.0, 2.5], [0.9, -0.7, 1.1]) };
@@ -39,8 +43,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let each = 1e3 * least / f64::from(steps) / plan.iterations.max(1) as f64;
         let (duration, iterations, verdict) = (plan.duration, plan.iterations, plan.verdict);
-        let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-        let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap_or_default().trim();
+        let most = most_memory();
         println!(
             "{steps} steps: {duration:.5} s, {least:.1} ms, {iterations} iterations of {each:.2} µs a step, {verdict:?}, {most}"
         );

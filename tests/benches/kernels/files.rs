@@ -3,13 +3,16 @@
 use std::time::Instant;
 
 use liestep::motion::Batch;
-use liestep_scene::{LeastWhole, Mistake, Spread};
+use liestep_scene::{LeastWhole, Spread};
 use simba::simd::AutoF64x8;
 
-use crate::counting::Uncounted;
+use crate::kernel::{Effort, Failure, Group, Kernel};
+
+/// A file's run samples its motion for a picture, as often in a run as in one twice as long.
+const EFFORT: Effort = Effort { batch: 40_000, rounds: 5, counted: 40_000 };
 
 /// The tables of a file besides the body.
-pub(crate) const FILES: [(&str, &str); 11] = [
+const FILES: [(&str, &str); 11] = [
     ("body", ""),
     ("body + gravity", "[gravity]\nm = 1\ng = 9.81\nrho = [0.3, 0.2, 0.4]\nup = [0, 0, 1]"),
     ("body + gravity gradient", "[gravity_gradient]\nGM = 1\nr = 1\ndirection = [0, 0, 1]"),
@@ -23,9 +26,18 @@ pub(crate) const FILES: [(&str, &str); 11] = [
     ("Cayley body", "[body]\nmoments = [2, 3, 4.5]\nkinetic = \"cayley\""),
 ];
 
-/// Makes steps of a file's scene, without storing states.
-pub(crate) fn run(tables: &str, steps: u32) -> Result<(), Mistake> {
-    liestep_scene::parse("bench.toml", &text(tables))?.first(steps).map(|_| ())
+/// Steps of the files' scenes, without stored states.
+pub(crate) fn groups() -> Vec<Group> {
+    let kernel = |(name, tables): (&'static str, &'static str)| {
+        Kernel::new(name, move || {
+            let scene = liestep_scene::parse("bench.toml", &text(tables))?;
+            Ok(move |steps| {
+                scene.first(steps)?;
+                Ok(0)
+            })
+        })
+    };
+    vec![Group::new("", EFFORT, FILES.map(kernel))]
 }
 
 fn text(tables: &str) -> String {
@@ -40,7 +52,7 @@ const MEMBERS: u32 = 8_000;
 
 /// Prints the time of a member of a file's ensemble of (3.13) before its first step, and the rate of its steps in lanes
 /// on one core: the fastest of some rounds.
-pub(crate) fn members() -> Result<(), Uncounted> {
+pub(crate) fn members() -> Result<(), Failure> {
     let draws = "[ensemble]\nmembers = 8000\ndraw.gravity.m = { mean = 1.0, deviation = 0.01 }\n\
                  draw.start.velocity = [0.5, 2, { from = 8.0, to = 12.0 }]\n";
     let scene = liestep_scene::parse("bench.toml", &format!("{}{draws}", text(FILES[1].1)))?;

@@ -1,9 +1,5 @@
 //! The time that a user waits after an edit: the incremental build of a crate with one declaration.
 //!
-//! ```text
-//! cargo bench --bench compile-time
-//! ```
-//!
 //! Each source is the `main.rs` of a crate that depends on liestep: a file in `compile_time/`, or a declaration of the
 //! examples with a `main` of its own. A number in it is changed, then the crate is checked or built without
 //! optimisation, as by a user's `cargo check` and `cargo build`; the time is that of the whole command, including cargo
@@ -24,7 +20,7 @@ const DECLARATIONS: [(&str, &str); 5] = [
     (
         "L4",
         concat!(
-            include_str!("../../examples/declarations/fourth_order_top.rs"),
+            include_str!("../../../examples/declarations/fourth_order_top.rs"),
             "type Top = FourthOrderTop;\n",
             include_str!("compile_time/top.rs")
         ),
@@ -32,7 +28,7 @@ const DECLARATIONS: [(&str, &str); 5] = [
     (
         "L6",
         concat!(
-            include_str!("../../examples/declarations/sixth_order_top.rs"),
+            include_str!("../../../examples/declarations/sixth_order_top.rs"),
             "type Top = SixthOrderTop;\n",
             include_str!("compile_time/top.rs")
         ),
@@ -40,7 +36,7 @@ const DECLARATIONS: [(&str, &str); 5] = [
     (
         "double pendulum",
         concat!(
-            include_str!("../../examples/declarations/double_pendulum.rs"),
+            include_str!("../../../examples/declarations/double_pendulum.rs"),
             include_str!("compile_time/double_pendulum.rs")
         ),
     ),
@@ -60,9 +56,9 @@ impl Crate {
         // All crates have one name and one set of versions, so the dependencies are compiled once.
         let manifest = format!(
             "[package]\nname = \"user\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
-             [dependencies]\nliestep = {{ path = {:?} }}\nnalgebra = {{ version = \"0.35\", default-features = false }}\n\n\
+             [dependencies]\nliestep = {{ path = '{}' }}\nnalgebra = {{ version = \"0.35\", default-features = false }}\n\n\
              [workspace]\n",
-            workspace.join("../../core")
+            workspace.join("../../core").display()
         );
         fs::write(directory.join("Cargo.toml"), manifest)?;
         fs::copy(workspace.join("../../Cargo.lock"), directory.join("Cargo.lock"))?;
@@ -96,7 +92,8 @@ impl Crate {
     }
 }
 
-fn main() -> io::Result<()> {
+/// Prints the times of all.
+pub(crate) fn print() -> io::Result<()> {
     println!("{:<16}{:>12}{:>12}", "ms", "check", "build");
     for (name, source) in DECLARATIONS {
         let user = Crate::new(source)?;
