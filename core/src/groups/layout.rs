@@ -62,7 +62,7 @@ impl Factor {
     #[must_use]
     pub fn at(mut self, place: usize) -> Self {
         for (name, _) in &mut self.components {
-            name.push_str(&format!("_{place}"));
+            *name = format!("{name}_{place}");
         }
         self
     }

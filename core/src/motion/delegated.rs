@@ -24,11 +24,6 @@ macro_rules! delegate_plan {
             self.$plan.keep(scene, motion)
         }
     };
-    (@admits $plan:tt, $($kept:tt)*) => {
-        fn admits(&self, scene: &S, motion: &$crate::delegate_plan!(@motion)) -> Result<(), $crate::SetupError> {
-            self.$plan.admits(scene, motion)
-        }
-    };
     (@momentum $plan:tt, $($kept:tt)*) => {
         fn momentum(
             &self,

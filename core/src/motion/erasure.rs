@@ -73,7 +73,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Erasure<S, P> {
 
     /// Writes a motion, and a memory if there is one.
     #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
-    fn write(&self, motion: &MotionOf<S>, memory: Option<(&P::Kept, &ElapsedTime<f64>)>, state: &mut [f64]) {
+    fn write(motion: &MotionOf<S>, memory: Option<(&P::Kept, &ElapsedTime<f64>)>, state: &mut [f64]) {
         let mut places = state.iter_mut();
         let mut write = |number: f64| places.next().map_or((), |place| *place = number);
         motion.attitude.matrix().each(&mut write);
@@ -91,7 +91,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Erasure<S, P> {
 
     fn boxed(&self, state: &StateOf<S, P>) -> Box<[f64]> {
         let mut numbers = vec![0.0; self.layout.state()].into_boxed_slice();
-        self.write(&state.motion, Some((&state.kept, &state.elapsed)), &mut numbers);
+        Self::write(&state.motion, Some((&state.kept, &state.elapsed)), &mut numbers);
         numbers
     }
 
@@ -105,7 +105,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Erasure<S, P> {
         let before = own.motion.steps;
         let result = steps(&mut own);
         if result.is_ok() || own.motion.steps != before {
-            self.write(&own.motion, Some((&own.kept, &own.elapsed)), state);
+            Self::write(&own.motion, Some((&own.kept, &own.elapsed)), state);
         }
         result
     }
@@ -146,7 +146,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Propagator for Erasure<S, P> {
         let mut reached: Box<[f64]> = (&*state).into();
         self.change(state, |own| {
             Integrator::run_stretches(&self.stepper, own, steps, &mut |motion, time| {
-                self.write(motion, None, &mut reached);
+                Self::write(motion, None, &mut reached);
                 next(&reached, time)
             })
         })

@@ -124,7 +124,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G>> Integrator for GroupStepper<G, A
     type State = GroupState<G, A>;
 
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
-        self.change(state, |any, own| any.step(own))
+        self.change(state, Integrator::step)
     }
 
     fn run(&self, state: &mut Self::State, steps: u64) -> Result<u64, StepError> {

@@ -54,15 +54,6 @@ pub trait Plan<S: Effect>: Sized {
     /// The memory at the beginning of a motion.
     fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept;
 
-    /// Checks that a motion may start here. A plan of jointed bodies checks that the joints are closed.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError`] if it may not.
-    fn admits(&self, _scene: &S, _motion: &MotionOf<S>) -> Result<(), SetupError> {
-        Ok(())
-    }
-
     /// Whether a step depends on the number of steps before it.
     const COUNTS_TIME: bool = false;
 

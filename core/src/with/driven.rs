@@ -69,7 +69,7 @@ where
 {
     type Kept = P::Kept;
 
-    delegate_plan!(plan, |kept| *kept; constants step_size keep admits momentum velocity is_in_step cost push);
+    delegate_plan!(plan, |kept| *kept; constants step_size keep momentum velocity is_in_step cost push);
 
     const RUNS_BY_STEPS: bool = true;
     const COUNTS_TIME: bool = true;

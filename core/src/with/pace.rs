@@ -81,7 +81,7 @@ impl<S: Effect<Scalar = f64>, P: Pacable<S>> Plan<S> for PacedStep<P> {
     const RUNS_BY_STEPS: bool = true;
     const VARIES: bool = true;
 
-    delegate_plan!(0, |kept| kept.0; step_size admits is_in_step explained cost);
+    delegate_plan!(0, |kept| kept.0; step_size is_in_step explained cost);
 
     fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
         self.0.refolded(scene, h).map(Self)

@@ -85,7 +85,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for VariedSteps
     const VARIES: bool = true;
 
     // A step of another length isn't one of the counted steps.
-    delegate_plan!(plan, |kept| kept.0; step_size admits momentum velocity is_in_step cost push see step_of);
+    delegate_plan!(plan, |kept| kept.0; step_size momentum velocity is_in_step cost push see step_of);
 
     fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, lengths: self.lengths.clone() })

@@ -121,7 +121,8 @@ impl<B: Backend<f64>> Limit<'_, B> {
         if pivot < -1e6 * f64::EPSILON {
             return Err(SetupError::NegativeKinetic { pivot, body: body() });
         }
-        if !is_finite || !(determinant > 0.0 && pivot > 0.0) {
+        let is_positive = determinant > 0.0 && pivot > 0.0;
+        if !(is_finite && is_positive) {
             let body = if pivot > 0.0 { None } else { body() };
             return Err(SetupError::SingularKinetic { determinant, body });
         }

@@ -20,18 +20,11 @@ const STEPS_BETWEEN_SEVERAL: u64 = 64;
 const TOLERATED: f64 = 2048.0;
 
 /// A declaration's code with numbers for its parameters.
+#[derive(Clone, Copy)]
 pub(super) struct Numbered<'a, B: Backend<f64>> {
     pub(super) codes: &'a Codes<B>,
     pub(super) numbers: &'a [f64],
 }
-
-impl<B: Backend<f64>> Clone for Numbered<'_, B> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<B: Backend<f64>> Copy for Numbered<'_, B> {}
 
 /// An increment that was made.
 #[derive(Clone, Copy)]

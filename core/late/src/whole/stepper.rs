@@ -398,7 +398,9 @@ impl<B: Backend<f64>> Propagator for Whole<B> {
     fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
         let mut next: Box<[f64]> = self.checked(state)?.into();
         // So small a change would be lost in rounding, and the constants of so short a step may be out of range.
-        if !(fraction.abs() < f64::EPSILON * f64::EPSILON) {
+        // NaN isn't tiny.
+        let is_tiny = fraction.abs() < f64::EPSILON * f64::EPSILON;
+        if !is_tiny {
             let wrong = |_| StepError::NonFinite { what: "part of the step" };
             let part = self.of_length(self.h * fraction).map_err(wrong)?;
             part.forget(&mut next);

@@ -65,7 +65,6 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         let state = self.begin(attitude, momentum);
         check_range(&state)?;
-        self.plan.admits(&self.scene, &state.motion)?;
         Ok(state)
     }
 
