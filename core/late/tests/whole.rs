@@ -132,9 +132,9 @@ fn groups_of_texts_have_the_order_and_the_invariants() {
     ];
     for (name, n, generators, is_rigid) in groups {
         let free = Free::on(n, &generators, is_rigid);
-        let order = free.order("step", [10, 20, 640]);
+        let order = free.order("step", [10, 20, 320]);
         assert!((order - 2.0).abs() < 0.01, "{name}: {order}");
-        let order = free.order("composition Suzuki 4", [4, 8, 64]);
+        let order = free.order("composition Suzuki 4", [8, 16, 96]);
         assert!((order - 4.0).abs() < 0.03, "{name}: {order}");
     }
 }
