@@ -45,7 +45,7 @@ impl Answer {
         A: liestep::groups::Advected<SO3> + 'static,
     {
         let choice = stepper.choice();
-        let (name, step, trials) = (choice.chosen().name.clone(), choice.chosen().step, choice.trials);
+        let (name, step, trials) = (choice.chosen().scheme.to_string(), choice.chosen().step, choice.trials);
         let run = Box::new(move || {
             let mut state = stepper.start();
             stepper.run(&mut state).ok()?;

@@ -1,5 +1,6 @@
 //! Files of several bodies: they agree with programs to the bit; springs, loops, and mistakes with their places.
 
+use std::fmt::Write as _;
 use std::fs;
 
 use liestep::groups::R3;
@@ -257,7 +258,8 @@ fn more_than_forty_bodies() {
     let (top, bottom) = ([0.0, 0.0, 0.1], [0.0, 0.0, -0.1]);
     for (chain, link) in (0..5).flat_map(|chain| (0..8).map(move |link| (chain, link))) {
         let (name, x) = (format!("rod-{chain}-{link}"), 0.2 * f64::from(chain));
-        text += &format!(
+        let _ = write!(
+            text,
             "[[body]]\nname = {name:?}\nm = 0.1\nmoments = [4e-4, 4e-4, 1e-5]\nposition = [{x}, 0, {}]\n\
              start.euler = [0, 0, 0]\nstart.velocity = [0, 0, 0]\nmoving = [0, {}, 0]\n",
             -0.1 - 0.2 * f64::from(link),
@@ -269,12 +271,14 @@ fn more_than_forty_bodies() {
         };
         if chain > 0 && link > 2 {
             let other = format!("rod-{}-{link}", chain - 1);
-            text += &format!(
+            let _ = write!(
+                text,
                 "[[spring]]\nbodies = [{other:?}, {name:?}]\nat = [{bottom:?}, {bottom:?}]\nk = 2\nlength = 0.15\n"
             );
         }
         if chain > 0 && link == 7 {
-            text += &format!(
+            let _ = write!(
+                text,
                 "[[body]]\nname = \"tie-{chain}\"\nm = 0.05\nmoments = [1e-5, 2e-4, 2e-4]\nposition = [{}, 0, -1.6]\n\
                  start.euler = [0, 0, 0]\nstart.velocity = [0, 0, 0]\n",
                 x - 0.1
