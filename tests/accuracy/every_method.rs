@@ -118,7 +118,7 @@ fn methods_by_their_texts_are_the_typed_ones() {
         assert_eq!(method.to_string(), name);
         let chosen = method.stepper(top.clone(), 0.04).unwrap();
         let ends = [typed.any().clone(), chosen].map(|stepper| {
-            let mut state = stepper.start_at(SO3::from(motion.attitude), motion.velocity).unwrap();
+            let mut state = stepper.start_at(motion.attitude, motion.velocity).unwrap();
             stepper.run(&mut state, 20).unwrap();
             state.numbers().iter().map(|number| number.to_bits()).collect::<Vec<_>>()
         });

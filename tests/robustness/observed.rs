@@ -23,7 +23,7 @@ fn a_run_ends_when_it_is_told_to() {
         assert!(matches!(error, RunError::End { .. }), "{error}");
     }
 
-    let mut state = start.clone();
+    let mut state = start;
     let ended = stepper.observed(&mut state).stop_when(|now| now.momentum().x < -0.5).steps(1000).unwrap();
     let RunReport { steps, reason: Reason::Stopped { time }, iterations } = ended else { panic!("{ended:?}") };
     assert!(state.momentum().x < -0.5 && iterations >= steps);
@@ -67,7 +67,7 @@ fn each_observer_sees_its_steps() {
 #[test]
 fn given_times_are_shown_in_order() {
     let (stepper, start) = top(0.01);
-    let (mut state, mut alone) = (start.clone(), start.clone());
+    let (mut state, mut alone) = (start, start);
     let times: Vec<f64> = (0..60).map(|frame| f64::from(frame) / 60.0).collect();
     let seen = RefCell::new(Vec::new());
     let shares = RefCell::new(Vec::new());
@@ -102,7 +102,7 @@ fn given_times_are_shown_in_order() {
 #[test]
 fn events_happen_in_their_order() {
     let (stepper, start) = top(0.05);
-    let (mut state, mut alone) = (start.clone(), start.clone());
+    let (mut state, mut alone) = (start, start);
     let seen = RefCell::new(Vec::new());
     let axis = Vector3::x();
     let times = (0..200).map(|k| 0.005 * f64::from(k));
@@ -136,7 +136,7 @@ fn events_happen_in_their_order() {
 #[test]
 fn an_event_may_end_the_run() {
     let (stepper, start) = top(0.01);
-    let mut state = start.clone();
+    let mut state = start;
     let mut at = Vec::new();
     let ended = stepper
         .observed(&mut state)
@@ -170,14 +170,14 @@ fn an_event_may_end_the_run() {
         .unwrap();
     assert_eq!(count.into_inner(), 1);
 
-    let mut state = start.clone();
+    let mut state = start;
     let run = stepper.observed(&mut state).event(Event::rising(), |now| (0.055 - now.time()).sqrt(), |_| ());
     let error = run.until(1.0).unwrap_err();
     assert!(matches!(error, RunError::NotANumber { event: 0, time } if (0.055..0.061).contains(&time)), "{error}");
     // A zero at a step before a NaN isn't a crossing, because the sign after it is unknown; the error names the NaN,
     // with a close inspection or without.
     for event in [Event::crossing(), Event::crossing().curvature(1.0)] {
-        let mut state = start.clone();
+        let mut state = start;
         let seventh = stepper.step_size() * 7.0;
         let run = stepper.observed(&mut state).event(
             event,
@@ -188,7 +188,7 @@ fn an_event_may_end_the_run() {
         assert!(matches!(error, RunError::NotANumber { event: 0, time } if (0.07..0.081).contains(&time)), "{error}");
     }
     let flat = |bound| {
-        let mut state = start.clone();
+        let mut state = start;
         stepper.observed(&mut state).event(Event::rising().curvature(bound), |_| 0.0, |_| ()).until(0.1)
     };
     for bound in [1.0, 1e300, f64::INFINITY, f64::NAN] {

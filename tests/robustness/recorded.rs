@@ -72,7 +72,7 @@ fn a_run_that_fails_keeps_what_it_has() {
     let (stepper, _) = top(0.35);
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(1e-3, 0.0, 0.0));
     let mut state = stepper.start(attitude, Vector3::zeros()).unwrap();
-    let mut single = state.clone();
+    let mut single = state;
     let steps = (0..100).take_while(|_| stepper.step(&mut single).is_ok()).count();
     assert!((5..100).contains(&steps), "{steps}");
     let written = Rc::new(RefCell::new(Vec::new()));
@@ -146,7 +146,7 @@ impl Sink for Calls {
 #[test]
 fn what_cannot_be_recorded_ends_the_run() {
     let (stepper, start) = top(0.01);
-    let mut state = start.clone();
+    let mut state = start;
     let mut recorder = Recorder::new(&stepper, Csv::new(Full)).in_blocks_of(usize::MAX);
     let error = stepper.observed(&mut state).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
     assert!(matches!(error, RunError::Observer { .. }) && state.steps() == 0, "{error}");
@@ -160,7 +160,7 @@ fn what_cannot_be_recorded_ends_the_run() {
     assert!(recorder.finish().is_err());
 
     let mut recorder = Recorder::new(&stepper, Table::new()).quantity("energy", "kJ", |now| 1e-3 * now.energy());
-    let mut state = start.clone();
+    let mut state = start;
     let error = stepper.observed(&mut state).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
     assert!(error.to_string().contains("two columns are called `energy`") && state.steps() == 0, "{error}");
     assert!(matches!(recorder.finish(), Err(RecordError::SameName { .. })));

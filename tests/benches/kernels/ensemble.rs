@@ -80,7 +80,7 @@ pub(crate) fn groups() -> Vec<Group> {
     }
     macro_rules! section {
         () => {
-            Section::new(Event::rising(), plane!()).keep(["t"], |now| [now.time()])
+            Section::<Top>::new(Event::rising(), plane!()).keep(["t"], |now| [now.time()])
         };
     }
     let kernels = [

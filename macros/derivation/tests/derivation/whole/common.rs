@@ -147,7 +147,6 @@ pub(super) fn declared(factors: &[Generators], carried: Vec<Carried>) -> StagedD
         energy: None,
         derivation: String::new(),
         has_kinetic: true,
-        is_expensive: false,
         parts: [true, false, false],
         denominators: 0,
         has_constant_inertia: true,
