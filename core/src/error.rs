@@ -70,7 +70,7 @@ pub enum SetupError {
         cause: Text,
     },
     /// A term of a system is at no body.
-    #[error("{cause}; add bodies first, and put terms at their numbers, from zero")]
+    #[error("{cause}; give the number of a body that was added before, from zero")]
     Place {
         /// The fault, as a sentence.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]

@@ -125,5 +125,5 @@ fn methods_by_their_texts_are_the_typed_ones() {
         assert_eq!(ends[0], ends[1], "{name}");
     }
     let refused: SetupError = "exact".parse::<Method>().unwrap().stepper(top, 0.04).unwrap_err();
-    assert_eq!(refused.to_string(), "the method is for a body without a potential");
+    assert_eq!(refused.to_string(), "the method is for a body without a potential; take a splitting");
 }

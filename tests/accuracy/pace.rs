@@ -121,7 +121,10 @@ fn what_is_read_is_of_the_time() {
         own.step(&mut other).unwrap();
         time += 0.5 * h * (before + body.pace(&state.advected().0));
     }
-    assert!((state.momentum() - other.momentum()).norm() < 1e-12 && (paced.time(&state) - time).abs() < 1e-13);
+    // Either solve stops where the next update would be below rounding if the curvature of its equation were one. In close
+    // passes it is some thousand, so that a hundred roundings are left after 300 steps.
+    let apart = (state.momentum() - other.momentum()).norm();
+    assert!(apart < 1e-11 && (paced.time(&state) - time).abs() < 1e-13, "{apart:e}");
     let (mut seen, mut last, mut told) = (Vec::new(), start, Vec::new());
     let report = paced
         .observed(&mut last)

@@ -53,7 +53,7 @@ impl<B: Backend<f64>> Problem<'_, B> {
             return Ok((cold.half, MAX_ITERATIONS + iterations));
         }
         let (damped, iterations) = self.iterated_damped(identity);
-        self.conclude(damped, iterations).map(|(half, iterations)| (half, 2 * MAX_ITERATIONS + iterations))
+        self.conclude(damped, iterations).map(|(half, iterations)| (half, MAX_ITERATIONS + iterations))
     }
 
     /// Newton's iteration from one guess; a solution on another branch is an error. If the iterates leave the domain of the

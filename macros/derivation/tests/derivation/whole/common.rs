@@ -161,7 +161,7 @@ pub(super) fn declared(factors: &[Generators], carried: Vec<Carried>) -> StagedD
             newton_residual: program(residual),
             kick_after: program(|_| vec![Symbol::ZERO; n]),
             kick_derivative: None,
-            momentum_jacobian: program(|_| Vec::new()),
+            momentum_jacobian: program(|_| (0..n * n).map(|at| Symbol::one_if(at / n == at % n)).collect()),
             at_rest,
             at_velocity: None,
             lagrangian: None,
