@@ -34,7 +34,7 @@ impl MatrixFactor {
         let basis = Basis::of(generators)?;
         let (form, chart) = (basis.form(), basis.chart()?);
         let relations = Relations::of(&basis);
-        let regular_form = relations.regular_form(form, basis.size);
+        let regular_form = Relations::regular_form(form, basis.size);
         Ok(Self { name: name.to_owned(), basis, form, chart, relations, regular_form, entry, component })
     }
 

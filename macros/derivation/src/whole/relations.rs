@@ -102,17 +102,11 @@ impl Relations {
         words.apply(Function::Sqrt, square)
     }
 
-    /// The number of rows on which a bilinear form isn't degenerate, and that form: its invariance can be restored.
-    pub(super) fn regular_form(&self, form: Form, size: usize) -> Option<(usize, Vec<f64>)> {
-        let identity = |size: usize| (0..size * size).map(|at| f64::from(u8::from(at / size == at % size))).collect();
-        match form {
-            Form::Rotation | Form::Orthogonal => Some((size, identity(size))),
-            Form::Rigid(rows) => Some((rows, identity(rows))),
-            _ => {
-                let is_regular = |b: &&Vec<f64>| kernel(b.chunks(size).map(<[f64]>::to_vec).collect(), size).is_empty();
-                self.covariant.iter().find(is_regular).map(|b| (size, b.clone()))
-            }
-        }
+    /// The number of rows of an orthogonal group, and the form that it leaves alone: its invariance can be restored. Other groups
+    /// have elements of any size, whose roundings are no measure of a distance; and the library restores rotations alone.
+    pub(super) fn regular_form(form: Form, size: usize) -> Option<(usize, Vec<f64>)> {
+        let identity = || (0..size * size).map(|at| f64::from(u8::from(at / size == at % size))).collect();
+        matches!(form, Form::Rotation | Form::Orthogonal).then(|| (size, identity()))
     }
 }
 
