@@ -15,7 +15,9 @@ type Generators = Vec<Vec<f64>>;
 /// A matrix with these entries.
 fn matrix(n: usize, entries: &[(usize, usize, f64)]) -> Vec<f64> {
     let mut matrix = vec![0.0; n * n];
-    entries.iter().for_each(|&(i, j, entry)| matrix[i * n + j] = entry);
+    for &(i, j, entry) in entries {
+        matrix[i * n + j] = entry;
+    }
     matrix
 }
 
@@ -52,14 +54,14 @@ fn extended_poses() -> Generators {
     list
 }
 
-fn decimal(entry: &f64) -> String {
+fn decimal(entry: f64) -> String {
     format!("{entry:?}")
 }
 
 /// A kinetic energy on the group of these generators. Where the group isn't rigid, half of it is that of `I − F⁻¹`, or the
 /// order is one.
 fn text(n: usize, generators: &Generators, is_rigid: bool) -> String {
-    let row = |row: &[f64]| format!("[{}]", row.iter().map(decimal).collect::<Vec<_>>().join(", "));
+    let row = |row: &[f64]| format!("[{}]", row.iter().map(|&entry| decimal(entry)).collect::<Vec<_>>().join(", "));
     let square = |m: &Vec<f64>| format!("[{}]", m.chunks(n).map(row).collect::<Vec<_>>().join(", "));
     let all = generators.iter().map(square).collect::<Vec<_>>().join(", ");
     let kinetic = if is_rigid {
@@ -190,7 +192,7 @@ fn values_are_prescribed_for_a_step() {
         let up = Vector3::new(angle.sin(), 0.0, angle.cos());
         let mut values = whole.numbers().to_vec();
         whole.declaration().set(&mut values, "up", up.as_slice()).expect("a value");
-        let report = stepper.step_with(&mut expected, &up.into());
+        let report = stepper.step_with(&mut expected, &up);
         assert_eq!(whole.step_with(&mut state, &values), report);
         let momentum = expected.momentum();
         assert_eq!(state[whole.layout().momentum()], *momentum.as_slice(), "step {step}");
