@@ -38,6 +38,7 @@ mod kernel;
 mod methods;
 mod recording;
 mod splittings;
+#[allow(dead_code)] // the scenes are a program of their own
 mod stepping;
 mod systems;
 
