@@ -9,7 +9,7 @@
 //! | table | |
 //! |---|---|
 //! | `heavy-top` | a step derived, by hand and by Runge–Kutta; declared kinetic terms beside each other |
-//! | `scenes` | an effect in a step |
+//! | `scenes` | an effect in a step, by the program `scenes.rs` |
 //! | `files` | scenes from files, by machine code with `--features machine` |
 //! | `methods` | every method, in seven scenes |
 //! | `gradients` | derivatives of steps |
@@ -37,18 +37,19 @@ mod heavy_top;
 mod kernel;
 mod methods;
 mod recording;
-mod scenes;
 mod splittings;
+#[allow(dead_code)] // the scenes are a program of their own
 mod stepping;
 mod systems;
 
-use kernel::{Failure, Group, arguments, measure};
+use std::process::Command;
+
+use kernel::{Failure, Group, arguments, built, measure};
 
 type Table = (&'static str, fn() -> Result<Vec<Group>, Failure>);
 
-const TABLES: [Table; 8] = [
+const TABLES: [Table; 7] = [
     ("heavy-top", heavy_top::groups),
-    ("scenes", scenes::groups),
     ("files", || Ok(files::groups())),
     ("methods", || Ok(methods::groups())),
     ("gradients", gradients::groups),
@@ -64,11 +65,18 @@ fn most_memory() -> String {
     line.unwrap_or("not reported by this system").trim().to_owned()
 }
 
+/// Runs the program of the scenes with these words.
+fn scenes(words: &[&str]) -> Result<(), Failure> {
+    let status = Command::new(built("scenes", &[], None)?).args(words).status()?;
+    if status.success() { Ok(()) } else { Err("the scenes' program has failed".into()) }
+}
+
 fn main() -> Result<(), Failure> {
     let words = arguments();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     match words.as_slice() {
-        ["zero-cost"] => scenes::zero_cost(),
+        ["zero-cost"] => scenes(&words),
+        ["scenes", words @ ..] => scenes(words),
         ["members"] => files::members(),
         ["memory", steps] => recording::memory(steps.parse()?),
         ["many", members] => ensemble::memory(members.parse()?),
@@ -78,16 +86,19 @@ fn main() -> Result<(), Failure> {
         [table, words @ ..] => {
             let (name, groups) = TABLES.iter().find(|(name, _)| name == table).ok_or_else(|| {
                 let names: Vec<_> = TABLES.iter().map(|(name, _)| *name).collect();
-                format!("no table is called `{table}`; the tables are {}", names.join(", "))
+                format!("no table is called `{table}`; the tables are scenes, {}", names.join(", "))
             })?;
             if *name == "heavy-top" && !words.contains(&"count") {
                 heavy_top::check()?;
             }
             measure(&[*name], groups()?, words)
         }
-        [] => TABLES.iter().try_for_each(|(name, groups)| {
-            println!("\n{name}");
-            measure(&[*name], groups()?, &[])
-        }),
+        [] => {
+            scenes(&[])?;
+            TABLES.iter().try_for_each(|(name, groups)| {
+                println!("\n{name}");
+                measure(&[*name], groups()?, &[])
+            })
+        }
     }
 }

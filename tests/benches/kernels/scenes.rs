@@ -1,6 +1,11 @@
-//! The cost of an effect in a step, for sums and for single declarations.
+//! The cost of an effect in a step, for sums and for single declarations: `cargo bench -p liestep-benches -- scenes`.
+//!
+//! A program of its own: beside the kernels of all tables, the compiler cuts a step otherwise, by up to a hundredth.
 //!
 //! A scene with gravity occurs three times: without it, with the coefficient zero, and with it.
+
+mod kernel;
+mod stepping;
 
 use declarations::{DoublePendulum, EqualNeedle, HeavyTop, Needle};
 use liestep::effects::{
@@ -10,8 +15,8 @@ use liestep::effects::{
 use liestep::prelude::*;
 use nalgebra::Vector3;
 
-use crate::kernel::{Failure, Group, Kernel, built, instructions};
-use crate::stepping::{EFFORT, scene, stepping};
+use kernel::{Failure, Group, Kernel, arguments, built, instructions, measure};
+use stepping::{EFFORT, scene, stepping};
 
 /// A body with a rotor in a single declaration.
 #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + spin.dot(&vee(F)))]
@@ -21,7 +26,7 @@ struct Gyrostat {
     spin: Vector3<f64>,
 }
 
-pub(crate) fn groups() -> Result<Vec<Group>, Failure> {
+fn groups() -> Result<Vec<Group>, Failure> {
     let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.5))?;
     let (body, spin) = (PrincipalBody { J_d }, Vector3::new(0.1, 0.2, 0.3));
     let (m, g, rho, up) = (1.0, 9.81, Vector3::new(0.3, 0.2, 0.4), Vector3::z());
@@ -77,11 +82,19 @@ fn double_pendulum() -> Result<DoublePendulum, Failure> {
 }
 
 /// Counts the free body in this program and in a program without other effects.
-pub(crate) fn zero_cost() -> Result<(), Failure> {
-    let beside = instructions(&std::env::current_exe()?, &["scenes", "count", "body"], EFFORT.counted)?;
+fn zero_cost() -> Result<(), Failure> {
+    let beside = instructions(&std::env::current_exe()?, &["count", "body"], EFFORT.counted)?;
     let alone = instructions(&built("free-body-alone", &[], None)?, &["count", "body"], EFFORT.counted)?;
     println!("free body beside the other effects{beside:>10.1} instructions a step");
     println!("free body alone                   {alone:>10.1} instructions a step");
     // The counts are exact, so they must be equal.
     if beside.to_bits() == alone.to_bits() { Ok(()) } else { Err("what isn't in the scene costs something".into()) }
+}
+
+fn main() -> Result<(), Failure> {
+    let words = arguments();
+    match words.iter().map(String::as_str).collect::<Vec<_>>().as_slice() {
+        ["zero-cost"] => zero_cost(),
+        words => measure(&[], groups()?, words),
+    }
 }
