@@ -192,7 +192,7 @@ impl<'a> Problem<'a> {
         if let Some((joint, pivot)) = self.met {
             return StepError::SingularJoint { joint, pivot };
         }
-        if !half.iter().all(|half| half.iter().all(|part| part.is_finite())) {
+        if !half.iter().all(|half| half.iter().copied().all(crate::numbers::is_finite)) {
             return blamed(fastest);
         }
         if let Some(body) = self.turned_too_far().or(equations.wrong_body()) {
