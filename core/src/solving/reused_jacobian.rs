@@ -35,7 +35,7 @@ const SAFE: f64 = 1.0 / 16.0;
 /// larger one wastes a residual in a narrow range of updates.
 const TYPICAL_CURVATURE: f64 = 1.0 / 16.0;
 
-/// The determinant [`Problem::safe`](super::Problem::safe), from that of the Jacobian at rest.
+/// The determinant above which a solve needs no second Jacobian, from that of the Jacobian at rest.
 #[must_use]
 pub fn safe<T: Real>(at_rest: T) -> T {
     at_rest * real(SAFE)
