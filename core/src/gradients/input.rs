@@ -208,9 +208,9 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
                     return Err(StepError::NonFinite { what: "control force" });
                 }
                 let half = *force * self.half_step();
-                plan.push(scene, &mut state.motion, &mut state.kept, &half)?;
+                plan.push(scene, &mut state.motion, &mut state.kept, &half);
                 let report = self.stepper.recorded(state, events, ends)?;
-                plan.push(scene, &mut state.motion, &mut state.kept, &half)?;
+                plan.push(scene, &mut state.motion, &mut state.kept, &half);
                 if !state.motion.momentum.is_finite() {
                     return Err(StepError::NonFinite { what: "momentum after the step" });
                 }

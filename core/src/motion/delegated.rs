@@ -47,8 +47,8 @@ macro_rules! delegate_plan {
             motion: &mut M,
             $kept: &mut Self::Kept,
             impulse: &$crate::mechanics::Vector<S>,
-        ) -> Result<(), $crate::StepError> {
-            self.$plan.push(scene, motion, &mut $inner, impulse)
+        ) {
+            self.$plan.push(scene, motion, &mut $inner, impulse);
         }
     };
     (@see $plan:tt, $kept:ident, $inner:expr) => {

@@ -216,12 +216,7 @@ pub trait Plan<S: Effect>: Sized {
     /// successful one, and reports contain only iterations.
     const RUNS_BY_STEPS: bool = false;
 
-    /// Adds an impulse to the momentum between two steps, and to its copies in the memory. A plan of jointed bodies
-    /// adds only the part that satisfies the constraints.
-    ///
-    /// # Errors
-    ///
-    /// [`StepError::SingularJoint`] if that part isn't determined.
+    /// Adds an impulse to the momentum between two steps, and to its copies in the memory.
     #[hot]
     fn push<M: Summation<Group<S>, S::Advected>>(
         &self,
@@ -229,9 +224,8 @@ pub trait Plan<S: Effect>: Sized {
         motion: &mut M,
         _kept: &mut Self::Kept,
         impulse: &Vector<S>,
-    ) -> Result<(), StepError> {
+    ) {
         motion.push(impulse);
-        Ok(())
     }
 
     /// Replaces the body's advected parameters, and clears the part of the memory that depends on the old ones.

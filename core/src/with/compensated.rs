@@ -134,12 +134,11 @@ impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
         motion: &mut M,
         kept: &mut Self::Kept,
         impulse: &Vector<S>,
-    ) -> Result<(), StepError> {
+    ) {
         let mut sums = Sums { motion: *motion.now(), carry: kept.1 };
-        self.0.push(scene, &mut sums, &mut kept.0, impulse)?;
+        self.0.push(scene, &mut sums, &mut kept.0, impulse);
         motion.replace(sums.motion);
         kept.1 = sums.carry;
-        Ok(())
     }
 
     fn see(&self, motion: &mut MotionOf<S>, kept: &mut Self::Kept, advected: S::Advected) {

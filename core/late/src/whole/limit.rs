@@ -106,7 +106,7 @@ impl<B: Backend<f64>> Limit<'_, B> {
         let is_rounded = dot(&step, &step) <= dot(&solution_now, &solution_now) * rounding * rounding;
         let is_settled = residual <= bound || is_rounded && residual <= bound * (AT_MOST * AT_MOST);
         let sign = |matrix: &[f64]| Pivots::of(matrix, zero.len()).least.0;
-        // Of two velocities with this momentum the one is taken that rest can be continued to.
+        // The velocity is the one of two with this momentum to which rest can be continued.
         let is_lost = sign(&derivative_at(&zero)) > 0.0 && sign(&derivative) <= 0.0;
         if is_settled && !is_lost { solution_now } else { vec![f64::NAN; zero.len()] }
     }

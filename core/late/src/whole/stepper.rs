@@ -319,7 +319,7 @@ impl<B: Backend<f64>> Whole<B> {
         step.beyond_solvable(largest)
     }
 
-    /// The same stepper for another step.
+    /// The stepper of these numbers and this method by another step.
     fn of_length(&self, h: f64) -> Result<Self, SetupError> {
         Self::shared(&self.codes, Arc::clone(&self.numbers), h, self.method)
     }

@@ -198,10 +198,9 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
         motion: &mut M,
         kept: &mut Self::Kept,
         impulse: &Vector3<f64>,
-    ) -> Result<(), StepError> {
+    ) {
         motion.push(impulse);
         kept.push(impulse);
-        Ok(())
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {

@@ -43,7 +43,7 @@ use crate::numbers::{BlockDiagonal, Coordinates as _, Pattern};
 #[derive(Clone)]
 pub struct MultibodyStepper {
     pub(super) h: f64,
-    /// With its terms in the order of their bodies.
+    /// The system, its terms in the order of their bodies.
     pub(super) system: Multibody,
     /// The terms of each body.
     ranges: Vec<Range<usize>>,
@@ -414,7 +414,7 @@ impl MultibodyStepper {
         ends(&self.system.pairs[pair].0, all, space)
     }
 
-    /// The same system by steps of another length.
+    /// The stepper of this system by steps of another length.
     ///
     /// # Errors
     ///

@@ -122,9 +122,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         let mut next = *state;
         let half = *force * (self.plan.length(&self.scene, &next.motion, &next.kept, true) * real(0.5));
-        self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half)?;
+        self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half);
         let report = Integrator::step(self, &mut next)?;
-        self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half)?;
+        self.plan.push(&self.scene, &mut next.motion, &mut next.kept, &half);
         if !next.motion.momentum.is_finite() {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }

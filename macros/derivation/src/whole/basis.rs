@@ -3,7 +3,7 @@
 use super::StepRefusal;
 use super::linear::{ROUNDING, inverse_of};
 
-/// What the generators say of the inverse and of the increment.
+/// The form of a group, by which inverses and increments are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
     /// The rotations of space in the basis of SO(3), whose Cayley map has a closed form.

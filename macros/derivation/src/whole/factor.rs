@@ -16,7 +16,7 @@ pub struct MatrixFactor {
     pub name: String,
     /// The generators.
     pub basis: Basis,
-    /// What they say of inverses.
+    /// The form of the group, by which inverses are written.
     pub form: Form,
     /// The coordinates of increments.
     pub chart: Chart,

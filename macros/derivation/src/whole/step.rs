@@ -65,49 +65,51 @@ impl Sizes {
 /// The programs of a step, or code for them. Each names its inputs; all but the first may read the constants.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Programs<P = Program> {
-    /// The constants, of the parameters and the step.
+    /// The constants, of parameters and step.
     pub constants: P,
-    /// Of momentum and advected: the target `a` of the momentum equation, and `a·a`.
+    /// The target `a` of the momentum equation (2.7), and `a·a`, of momentum and advected.
     pub target: P,
-    /// Of half, target and advected, a Newton iteration: the next half, the squares of the update and of the next half, then
+    /// A Newton iteration, of half, target and advected: the next half, the squares of the update and of the next half, then
     /// for each block of the Jacobian its determinant and the product of its diagonal, and its factors.
     pub iterate: P,
-    /// Of the same and of the factors with the determinants before them: the next half by the old Jacobian, and both squares.
+    /// An iteration by the old Jacobian, of half, target, advected, and factors with the determinants before them: the next
+    /// half, and both squares.
     pub again: P,
-    /// Of half, target, momentum, advected, attitude and history: the state without the number of steps, the sum of momentum
-    /// and advected, and for each factor whose increment may be far from the identity a number, whose product with the square
+    /// The state after the step, without the number of steps, of half, target, momentum, advected, attitude and history; then
+    /// the sum of momentum and advected, and for each factor whose increment may be far from the identity a number, whose product with the square
     /// of `s` is below one if `s` times the increment is near it.
     pub finish: P,
-    /// Of half, target and advected, for a solve with care: the residual, the Jacobian row by row, the update, and the
+    /// The Newton system for a solve with care, of half, target and advected: the residual, the Jacobian row by row, the update, and the
     /// determinant and the product of the diagonal of each block.
     pub newton: P,
-    /// Of half, step, parameters and advected: the last numbers of [`finish`](Self::finish); then of `h` times the Jacobian
+    /// The branch of a solution, of half, step, parameters and advected: the last numbers of [`finish`](Self::finish); then of `h` times the Jacobian
     /// of the momentum along `exp(t E_j) F` the determinant and the product of the diagonal of each block, and the trace of
     /// each factor's part.
     pub branch: P,
-    /// Of parameters and advected: determinants and diagonals of the inertia, where it varies.
+    /// Determinants and diagonals of the inertia where it varies, of parameters and advected.
     pub safe: Option<P>,
-    /// Of the attitude and of the parameters: the advected parameters.
+    /// The advected parameters, of attitude and parameters.
     pub seen: P,
-    /// Of the attitude: for each factor that [is restored](MatrixFactor::is_restored) its distance from the group, and a
-    /// nearer matrix.
+    /// The distance from the group and a nearer matrix, of the attitude, for each factor that
+    /// [is restored](MatrixFactor::is_restored).
     pub restored: P,
-    /// Of the attitude: the sum of the factors' distances from their groups.
+    /// The sum of the factors' distances from their groups, of the attitude.
     pub defect: P,
-    /// Of parameters and advected: the inertia at rest, row by row.
+    /// The inertia at rest, row by row, of parameters and advected.
     pub inertia: P,
-    /// Of momentum, parameters and advected: the velocity by the inertia at rest; an estimate where the continuous limit isn't
+    /// The velocity by the inertia at rest, of momentum, parameters and advected; an estimate where the continuous limit isn't
     /// quadratic.
     pub velocity: P,
-    /// Of velocity, parameters and advected: the momentum.
+    /// The momentum, of velocity, parameters and advected.
     pub momentum: P,
-    /// Of the same: the derivative of the momentum by the velocity, where the continuous limit isn't quadratic.
+    /// The derivative of the momentum by the velocity, of velocity, parameters and advected, where the continuous limit isn't
+    /// quadratic.
     pub hessian: Option<P>,
-    /// Of the same: the energy, J.
+    /// The energy, J, of velocity, parameters and advected.
     pub energy: P,
-    /// Of attitude and momentum: the momentum in space.
+    /// The momentum in space, of attitude and momentum.
     pub spatial: P,
-    /// Of advected: the trace of the Jacobian at rest, then its determinants and diagonals.
+    /// The trace of the Jacobian at rest, then its determinants and diagonals, of advected and parameters.
     pub rest: P,
 }
 

@@ -257,12 +257,11 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
         motion: &mut M,
         kept: &mut Self::Kept,
         impulse: &Vector3<Scalar<S>>,
-    ) -> Result<(), StepError> {
+    ) {
         if !impulse.iter().all(|part| part.simd_eq(real(0.0)).all()) {
             motion.push(impulse);
             kept.0 = None;
         }
-        Ok(())
     }
 
     /// The kernel's motion was computed with the old values, so it is discarded.
