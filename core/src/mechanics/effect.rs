@@ -157,7 +157,7 @@ impl<E: Effect + ?Sized> Limit<E> {
     message = "`{Self}` isn't an effect, so it can't be in a scene",
     label = "not an effect",
     note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums",
-    note = "a continuous Lagrangian `l = …` is one with `discretise = …`, which makes its steps",
+    note = "a continuous Lagrangian `l = …` is one with `discretise = trapezoid(Cayley)` or another, which makes its steps",
     note = "joints are added to a system of bodies: `liestep::methods::Multibody`"
 )]
 #[hot]
