@@ -26,7 +26,7 @@ pub(super) struct Run {
     a_step: f64,
     /// Operations of the run.
     pub(super) cost: f64,
-    /// The end, or none if the step is invalid, or one had no solution.
+    /// The state at the end of the run, or none if the step is invalid, or one had no solution.
     pub(super) end: Option<Rc<EndNumbers>>,
 }
 
@@ -197,7 +197,7 @@ impl<'a> Ladder<'a> {
         let last = points.last()?;
         let order = Self::shown(&points, self.order()).unwrap_or(unseen);
         let ratio = (last.steps / finest.steps).powf(order);
-        // The measured difference is that of two errors.
+        // The measured difference is that of the errors of two runs.
         Some((last.error * ratio / (1.0 - ratio), order))
     }
 

@@ -332,7 +332,7 @@ impl<'a> Search<'a> {
             (Some(floor), ..) => AccuracyError::Unreachable { tolerance, floor, trials },
             (_, Some(failure @ AccuracyError::Setup(_)), _) | (_, Some(failure), None) => failure,
             (.., Some((steps, is_bound, method))) => AccuracyError::TooManySteps { steps, is_bound, method, trials },
-            // Without any method.
+            // No method was tried.
             (..) => AccuracyError::TooManySteps { steps: 0.0, is_bound: true, method: String::new(), trials },
         }
     }
@@ -345,8 +345,7 @@ impl Survey<'_> {
         Some(self.ladders[index].of_run((SHORTER * steps, a_step)))
     }
 
-    /// Lower bounds of the same for a method without a small enough error here; with one step, if that is too long for
-    /// this part.
+    /// Lower bounds of the steps and operations expected of a method without a small enough error here;
     fn bound(&self, index: usize, error: f64) -> (f64, f64) {
         let ladder = &self.ladders[index];
         ladder.of_run((SHORTER * ladder.bound(error).0, ladder.least(1.0) - ladder.least(0.0)))

@@ -147,7 +147,7 @@ where
 {
     type Output = Result<(), StepError>;
 
-    /// AVX has three-operand instructions; nothing here acts on four numbers at a time.
+    /// AVX is used for its instructions with three operands;
     const VECTORS: Vectors = Vectors::Four;
     const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 

@@ -45,7 +45,7 @@ pub enum InertiaError {
         "the inertia is not diagonal: an entry off the diagonal is {largest:e}; take `NonstandardInertia`, or the principal axes as the body's"
     )]
     NotDiagonal {
-        /// The largest of these entries, kg m².
+        /// The largest of the entries off the diagonal, kg m².
         largest: f64,
     },
     /// `J_d` has a negative eigenvalue, so the principal moments violate the triangle inequality.

@@ -37,9 +37,9 @@ pub enum RunError {
     Energy {
         /// The time after the step, s.
         time: f64,
-        /// The energy before it, J.
+        /// The energy before the step, J.
         before: f64,
-        /// The energy after it, J.
+        /// The energy after the step, J.
         after: f64,
     },
     /// A requested time lies before the state, or before the time requested before it, or isn't finite.

@@ -432,7 +432,7 @@ where
 
 impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for SO3 {
     fn schemes(scene: &S) -> Vec<Scheme> {
-        // These schemes need a physical, constant inertia and a separable Lagrangian.
+        // The schemes of one body on SO(3) need a physical, constant inertia and a separable Lagrangian.
         let Ok(inertia) = Inertia::new(scene.inertia(&scene.advected())) else { return Vec::new() };
         let body = ExactBody::new(&inertia);
         if Stepper::split(scene.clone(), 1.0, body, SplittingScheme::STRANG).is_err() {

@@ -31,7 +31,7 @@ pub enum CheckpointError {
         field: &'static str,
         /// A scalar of the field in the checkpoint.
         stored: f64,
-        /// That scalar in the stepper.
+        /// Value of that scalar in the stepper.
         own: f64,
     },
     /// The step had another size.
