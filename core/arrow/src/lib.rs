@@ -41,7 +41,7 @@ pub struct ArrowStream<W: Write> {
 }
 
 enum Stage<W: Write> {
-    /// The writer before the columns are known.
+    /// The writer, before the table's columns are known.
     Before(W),
     Writing(Box<StreamWriter<W>>, SchemaRef),
     Done(W),

@@ -89,8 +89,8 @@ where
         }
     }
 
-    /// Selects the inputs of each step: the scalars in these places of an input like this one, in the order of
-    /// [`Input::scalars`], each once; the others stay as they are.
+    /// Selects the inputs of each step: the scalars in these places of an input like this one, each once, in the order
+    /// of [`Input::scalars`];
     #[must_use]
     pub fn input(self, like: InputOf<S>, places: impl IntoIterator<Item = usize>) -> Self {
         Self { like, places: places.into_iter().collect(), ..self }

@@ -25,7 +25,8 @@ pub(crate) struct Model<S: SecondDerivatives<Scalar = f64>, P> {
     pub(crate) stepper: Stepper<S, P>,
     /// The number of constants of a motion that are part of its state: a free duration, or the unknowns of an estimate.
     pub(crate) constants: usize,
-    /// A small change of each constant that steps depend on, and the steppers with it and with its opposite.
+    /// Differences of the constants that steps depend on: a small change of each, and the steppers with it and with its
+    /// opposite.
     pub(crate) beside: Vec<(f64, [Stepper<S, P>; 2])>,
     pub(crate) like: InputOf<S>,
     pub(crate) places: Vec<usize>,
@@ -60,8 +61,8 @@ where
     of(&tangent).lu().solve(&of(&turn.adjoint_matrix()))
 }
 
-/// The state beside this one, by its displacement and the change of its momentum. `None` if the stepper can't start
-/// there.
+/// The state displaced from this one, by a displacement of its attitude and a change of its momentum. `None` if the
+/// stepper can't start there.
 pub(crate) fn displaced<S, P>(stepper: &Stepper<S, P>, state: &StateOf<S, P>, x: &DVector<f64>) -> Option<StateOf<S, P>>
 where
     S: SecondDerivatives<Scalar = f64>,
@@ -193,7 +194,7 @@ where
             }
             Some(found)
         };
-        // The force causes this momentum in one step.
+        // The momentum that the force causes in one step.
         let momentum = COARSE * self.momentum(stage);
         let force = momentum / stage.by_input.rows(dimension, dimension).amax();
         let mut hessian = DMatrix::zeros(states + inputs, states + inputs);

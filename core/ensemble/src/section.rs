@@ -92,7 +92,7 @@ pub(crate) struct Watch<S> {
 pub(crate) struct Place<'a, S> {
     /// The function's value after the step, if it was computed in lanes.
     pub(crate) value: Option<f64>,
-    /// The state before the step; the present one if that was checked.
+    /// The state before the step, or the present one if that was checked already.
     pub(crate) before: &'a dyn Fn() -> S,
     pub(crate) now: &'a dyn Fn() -> S,
 }
@@ -204,7 +204,7 @@ impl<M: Integrator> Section<M> {
         Some(core::array::from_fn(|lane| values.extract(lane)))
     }
 
-    /// The crossings up to here that haven't been found yet; `is_last` if no further check follows.
+    /// The crossings up to this state that haven't been found yet; `is_last` if no further check follows.
     ///
     /// Steps with a crossing are repeated by the member's own stepper.
     pub(crate) fn look(

@@ -320,7 +320,7 @@ fn another_plan_has_another_fingerprint() {
     assert_unlike(&plans);
 }
 
-/// No two have one fingerprint.
+/// Asserts that no two plans have one fingerprint.
 fn assert_unlike(plans: &[Ensemble<Top>]) {
     let mut fingerprints: Vec<u64> = plans.iter().map(Ensemble::fingerprint).collect();
     fingerprints.sort_unstable();

@@ -125,7 +125,7 @@ fn a_function_without_a_value_stops_its_member() {
         Section::new(event, function).keep(["t"], |now| [now.time()])
     };
     let undisturbed = tops(12, STEPS).every(1).chunk(0, &|| false).unwrap();
-    // Recorded velocities meet that condition, too.
+    // Recorded velocities meet the condition of the event, too.
     let spins = Section::new(Event::crossing(), |_: &Moment<'_, Top>| 1.0);
     let watched = tops(12, STEPS).every(1).section(spins).keep(["w"], |run| [run.stepper.velocity(run.state).z]);
     let watched = watched.chunk(0, &|| false).unwrap().rows;

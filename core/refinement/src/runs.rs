@@ -63,7 +63,7 @@ pub enum RefinementError {
     /// All runs ended far from the reference: all errors are 0.5 and more.
     #[error("no run ends near the reference, the least error is {least:.1e}; make more steps")]
     OtherMotion {
-        /// The least error.
+        /// The least error among the runs.
         least: f64,
     },
     /// An end, or the reference, isn't finite.

@@ -341,7 +341,7 @@ struct Wheel {
     torque: f64,
 }
 
-/// The least effort from rest to a spin `J_3 ω` by such a torque is that of a constant one, `½ (J_3 ω)²/T`.
+/// The least effort from rest to a spin `J_3 ω` by a declared torque is that of a constant one, `½ (J_3 ω)²/T`.
 #[test]
 fn what_a_step_is_given_is_chosen() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.0)).expect("a body");

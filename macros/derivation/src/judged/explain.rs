@@ -72,7 +72,7 @@ fn term(mistake: TermMistake, declaration: &Declaration) -> String {
     }
 }
 
-/// Of a term that no equation of motion has.
+/// The message for a term that no equation of motion contains.
 fn idle(mistake: TermMistake, declaration: &Declaration) -> String {
     let motion = match declaration.role {
         Role::Force => "displacement",
