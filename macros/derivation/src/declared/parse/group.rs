@@ -14,7 +14,7 @@ use crate::mathematics::symbolic::Rational;
 /// The name behind `group =`.
 pub(super) struct GroupName {
     path: Path,
-    /// Whether it is `Name!`, a group that `matrix_group!` declares.
+    /// Whether the name is `Name!`, a group that `matrix_group!` declares.
     is_own: bool,
 }
 
@@ -162,7 +162,7 @@ const IN_PRODUCTS: [&str; 4] = ["SO3", "R1", "R2", "R3"];
 /// The limit on factors: more would make the derived code grow without bound.
 const MOST_FACTORS: usize = 4;
 
-/// Reports increments, of one body or of several, whose names mean something else, which they would hide.
+/// Reports increments, of one body or of several, whose names have another meaning.
 pub(super) fn check_increments(role: Role, factors: &[Factor], taken: &TakenNames, errors: &mut Errors) {
     // An increment without a name is `F`, which no other name can be.
     for Factor { name, place, .. } in factors.iter().filter(|factor| factor.name != "F") {
