@@ -163,7 +163,7 @@ pub struct Discretisation {
 /// The points of a step at which `l` is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quadrature {
-    /// At both ends, `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
+    /// The trapezoidal rule at both ends of a step, `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
     Trapezoid,
     /// In the middle of the curve, `h l(ξ, τ(hξ/2)⁻¹·w)`.
     Midpoint,

@@ -183,7 +183,7 @@ pub(super) fn check_increments(role: Role, factors: &[Factor], taken: &TakenName
     }
 }
 
-/// Names that other declarations have.
+/// Names that other parts of the declaration have.
 pub(super) struct TakenNames {
     pub(super) fields: Vec<String>,
     pub(super) advected: Vec<String>,
