@@ -40,7 +40,7 @@ impl Deref for Declaration {
 /// A value in space.
 #[derive(Clone, Copy)]
 pub(crate) enum InSpace {
-    /// That of the parameter with this number.
+    /// The value of the parameter with this number.
     Parameter(usize),
     /// The unit vector with this number.
     Direction(usize),

@@ -74,7 +74,7 @@ fn main() -> Result<(), Error> {
                 Ok((stepper, state))
             };
             let begun = Instant::now();
-            // What Python keeps of a member.
+            // The columns that the example in Python records of a member.
             let columns = (0..17).map(|column| format!("column_{column}")).collect::<Vec<_>>();
             let columns = columns.iter().map(String::as_str).collect::<Vec<_>>();
             let ensemble = Ensemble::one_by_one("tops", 100_000, 100, make).seed(7).keep_named(&columns, |run, row| {

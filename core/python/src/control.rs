@@ -21,36 +21,36 @@ use crate::scene::{Four, Late};
 use crate::start::Start;
 use crate::table::Columns;
 
-/// One type for all scenes on SO(3).
+/// The type of all scenes on SO(3), whatever their terms.
 type Scene = Late<SO3, Four, WithKinetic>;
 
-/// From where to where, by what, within what.
+/// The task of a plan: start, goal, inputs, bounds and cost.
 #[derive(FromPyObject)]
 pub(crate) struct Task {
     step: f64,
     steps: usize,
     start: Start,
-    /// Any attitude or velocity where there is none.
+    /// The goal; attitude or velocity may be free.
     goal: Start,
-    /// Those of the body with a torque.
+    /// The axes of the body with a torque.
     axes: Vec<usize>,
-    /// The least, the largest and the first torque about each of them in each step, N m.
+    /// The least, the largest and the first torque about each axis in each step, N m.
     torques: Vec<[f64; 3]>,
     /// An axis of the body, a direction of space, and the cosine of the angle between both, which isn't exceeded.
     cones: Vec<([f64; 3], [f64; 3], f64)>,
     is_shortest: bool,
     tolerance: f64,
     most: usize,
-    /// Called with the number of iterations and the residual; `False` ends the search.
+    /// The function that is called with the number of iterations and the residual; `False` ends the search.
     progress: Option<Py<PyAny>>,
 }
 
-/// The plan, and what was raised in the middle of its search.
+/// The plan, and the exception raised during its search.
 type Found = (ControlPlan<Scene, OwnStep<Scene>>, Option<PyErr>);
 
 impl Task {
     fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<Found, Failure> {
-        // More vectors than four are made of the directions of space.
+        // A sum with more than four vectors advects the directions of space instead.
         let scene = match Scene::of(Declaration::sum(terms)?) {
             Err(LateError::Advected { .. }) => Scene::of(Declaration::sum_in_frames(terms)?)?,
             other => other?,

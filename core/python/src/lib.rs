@@ -30,7 +30,7 @@ use crate::run::{Course, Recorded};
 use crate::start::Start;
 use crate::table::{Table, View};
 
-/// What a text declares.
+/// The declaration of a text.
 #[pyclass(frozen, module = "liestep._native")]
 struct Derived(&'static Declaration);
 
@@ -41,7 +41,7 @@ impl Derived {
         Ok(Self(py.detach(|| Declaration::parse(text)).map_err(Failure::from)?))
     }
 
-    /// What was derived, as text.
+    /// The derived equations, as text.
     #[getter]
     fn derivation(&self) -> &'static str {
         &self.0.derivation
@@ -158,7 +158,7 @@ impl Scene {
     }
 }
 
-/// A run as Python sees it. What stopped it is raised there, with what was recorded.
+/// A run as Python's dictionary. What stopped it is raised there, with what was recorded.
 fn shown(py: Python<'_>, recorded: Recorded) -> PyResult<Bound<'_, PyDict>> {
     let dictionary = PyDict::new(py);
     dictionary.set_item("table", Py::new(py, recorded.columns.into_table())?)?;

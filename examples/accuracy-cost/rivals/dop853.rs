@@ -3,7 +3,7 @@
 //! Coefficients and error estimate are those of Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, 2nd
 //! edition, II.5 and II.10.
 
-// The digits are those of the source, although a double has fewer.
+// Coefficients have the digits of the source, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use workbench::top_equations::State;

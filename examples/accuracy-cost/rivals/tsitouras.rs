@@ -3,7 +3,7 @@
 //! Coefficients are those of Ch. Tsitouras, *Runge–Kutta pairs of order 5(4) satisfying only the first column simplifying
 //! assumption*, Comput. Math. Appl. 62 (2011); `accuracy-cost.csv` has the order of each run.
 
-// The digits are those of the source, although a double has fewer.
+// Coefficients have the digits of the source, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use workbench::top_equations::State;

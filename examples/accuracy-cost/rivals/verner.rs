@@ -2,7 +2,7 @@
 //!
 //! Coefficients are those of J. H. Verner, *Refuge for Runge–Kutta pairs*; `accuracy-cost.csv` has the order of each run.
 
-// The digits are those of the source, although a double has fewer.
+// Coefficients have the digits of the source, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use workbench::top_equations::State;

@@ -16,11 +16,11 @@ fn rotation(axis: &Vector3<f64>, degrees: f64) -> SO3 {
     UnitQuaternion::from_scaled_axis(axis * degrees.to_radians()).into()
 }
 
-/// The results of all guesses.
+/// The results of Newton's iteration from all guesses.
 struct Seen {
     refused: u32,
-    /// The number of these whose reported determinant is negative; about a middle axis it may be positive, and the
-    /// trace decides.
+    /// The number of solutions with a negative determinant; about a middle axis it may be positive for the wrong root,
+    /// and the trace decides.
     negative: u32,
     traps: u32,
     wrong: u32,

@@ -76,7 +76,7 @@ fn a_force_of_its_own() {
     let drawn = "[ensemble]\nmembers = 4\ndraw.force.tau = [0, 0, { from = 0, to = 1 }]\n";
     fs::write(folder.join("drawn.toml"), format!("{BY_EFFECTS}{force}{drawn}")).unwrap();
     assert!(printed(&folder, &["ensemble", "drawn.toml", "--out", "."]).contains('4'));
-    // A step of all terms is one text.
+    // The C code of a step with all terms is one text.
     let c = printed(&folder, &["derive", "drawn.toml", "--c"]);
     assert!(c.starts_with("/* A step of PrincipalBody + Gravity + Force on SO3."), "{c}");
     assert!(printed(&folder, &["derive", "drawn.toml"]).contains("gravity\n"));

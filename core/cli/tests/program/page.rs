@@ -87,7 +87,7 @@ fn a_browser_shows_it() {
     assert_eq!(document.matches("<canvas").count(), 5);
     assert!(document.contains("<output>1.50 s</output>"), "{document}");
     shown("top.html", &["--screenshot=top.png"]);
-    // An empty page has a tenth of that.
+    // The picture of an empty page has a tenth of that size.
     assert!(fs::metadata(folder.join("top.png")).unwrap().len() > 40_000);
 
     // The page plays, can be turned and zoomed, and goes to the time of a click in a chart.
