@@ -177,7 +177,7 @@ fn work_leaves_out_steps_that_are_refused_and_ends_that_are_not_finite() {
     let nowhere = Reference::End(End { attitude: SO3::identity(), velocity: Vector3::new(f64::NAN, 0.0, 0.0) });
     let refused = work_precision(looping(), 1.0, [100, 200], nowhere, BRIEF).unwrap_err();
     assert_eq!(refused, RefinementError::NonFinite { step: 0.005 });
-    // The reference is another motion.
+    // A reference of another motion is refused.
     let spun = Reference::End(End { attitude: SO3::identity(), velocity: Vector3::new(1e3, 0.0, 0.0) });
     let refused = work_precision(looping(), 1.0, [100, 200], spun, BRIEF).unwrap_err();
     assert!(matches!(refused, RefinementError::OtherMotion { least } if least >= 0.5), "{refused}");

@@ -138,7 +138,8 @@ fn discretisations_converge_to_the_continuous_motion() {
     check(ChordExp::new, "chord(exp)");
 }
 
-/// A sum is the sum of the terms, and a rotor adds its bias: by hand, `μ̇ = μ × Ω + m g w × ρ` with `μ = JΩ + s`.
+/// The equations of a sum are the sums of the terms' equations, and a rotor adds its bias: by hand,
+/// `μ̇ = μ × Ω + m g w × ρ` with `μ = JΩ + s`.
 #[test]
 fn sums_have_continuous_equations() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap();

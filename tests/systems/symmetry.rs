@@ -46,7 +46,8 @@ conserved! {
     "The rotations of space, which keep its metric.": elastic_flow on_sl2 = 1;
 }
 
-/// The magnet has no symmetry in general, and turns about the field if its gradient is invariant under them, too.
+/// The magnet has no symmetry in general, and one under turns about the field if the field's gradient is invariant
+/// under these, too.
 #[test]
 fn magnet() {
     let mut magnet = samples::magnet();

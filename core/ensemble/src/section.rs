@@ -250,7 +250,7 @@ impl<M: Integrator> Section<M> {
         }
     }
 
-    /// The values of all its functions at one time.
+    /// The values of all functions of the section at one time.
     pub(crate) fn values(&self, now: &Moment<'_, M>) -> Vec<f64> {
         let Crossing { columns, reduced, .. } = self.at(now);
         [vec![(self.function)(now)], columns, reduced].concat()

@@ -84,7 +84,7 @@ pub enum RunError {
 pub struct RunReport {
     /// Number of steps made.
     pub steps: u64,
-    /// Number of their iterations, as counted by [`StepReport`](crate::motion::StepReport).
+    /// Number of iterations in the steps, as counted by [`StepReport`](crate::motion::StepReport).
     pub iterations: u64,
     /// The reason of the end.
     pub reason: Reason,

@@ -203,7 +203,7 @@ pub enum UnknownMethod {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Method {
-    /// The scheme of its steps.
+    /// The scheme of the steps.
     pub scheme: Scheme,
     /// Whether the sums of a state are [compensated](Stepper::compensated).
     pub compensated: bool,
@@ -259,7 +259,7 @@ const fn refused<T>(cause: &'static str) -> Result<T, SetupError> {
 }
 
 impl Method {
-    /// Whether it is the scene's own step without wrappers.
+    /// Whether the method is the scene's own step without wrappers.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         *self == Self { substeps: self.substeps.min(1), ..Self::default() }

@@ -183,8 +183,8 @@ fn there_and_back(motion: &Motion, h: f64) -> Result<[f64; 3], Failure> {
     Ok(errors.map(|error| error / EPSILON))
 }
 
-/// The largest of three medians over an octave. The distance is a walk of roundings, and neighbouring step sizes differ
-/// by a factor of ten.
+/// The largest of the medians of three errors over an octave of step sizes. The distance is a walk of roundings, and
+/// neighbouring step sizes differ by a factor of ten.
 fn median(motion: &Motion, h: f64) -> Result<f64, Failure> {
     let runs: Result<Vec<_>, Failure> =
         (0..9).map(|k| there_and_back(motion, h / 2_f64.powf(f64::from(k) / 8.0))).collect();

@@ -240,7 +240,7 @@ impl Words {
                 Value::Result(_) => operations.extend(self.made(value)),
             }
         }
-        // An ordered set has numbers before inputs and results, while a program's registers begin with its inputs.
+        // Sorted values begin with numbers, while the registers of a program begin with its inputs.
         let (numbers, others) = (literals.len(), inputs.len());
         let place = |at: usize| match at {
             at if at < numbers => at + others,
