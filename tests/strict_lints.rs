@@ -1,4 +1,4 @@
-//! A crate that denies what it can: an expansion adds no warning, under clippy's pedantic lints neither.
+//! A crate that denies all warnings: an expansion adds none, under clippy's pedantic lints neither.
 
 #![deny(warnings, missing_docs, non_snake_case, unused, rust_2018_idioms, unreachable_pub)]
 #![deny(clippy::all, clippy::pedantic, clippy::nursery)]

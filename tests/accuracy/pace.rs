@@ -111,7 +111,7 @@ fn what_is_read_is_of_the_time() {
     assert!((start.momentum() - momentum).norm() < 1e-15 && (paced.velocity(&start) - velocity).norm() < 1e-15);
     let energy = 0.5 * momentum.dot(&velocity) - 1.0 / body.gap(&body.a);
     assert!((paced.energy(&start) - energy).abs() < 1e-15 && (start.advected().1.0.x - energy).abs() < 1e-15);
-    // The steps of `τ` with that energy, and their times.
+    // Steps of `τ` by a scene with that energy are compared, and their times are summed.
     let own = Stepper::new(Needle { energy, ..body }, h).unwrap();
     let (mut state, mut other) = (start, own.start_with_momentum(SO3::identity(), momentum).unwrap());
     let mut time = 0.0;

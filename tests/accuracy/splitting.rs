@@ -160,7 +160,7 @@ fn a_force_gradient_has_to_be_written() {
     let split = |scheme| Stepper::split(top.clone(), 0.01, symmetric(&top.0), scheme).map(|_| ());
     assert_eq!(split(SplittingScheme::NYSTROM_6), Ok(()));
     assert_eq!(split(SplittingScheme::FORCE_GRADIENT_2), Err(SetupError::NoForceGradient));
-    // The choice by accuracy avoids such schemes.
+    // The choice by accuracy leaves out schemes with force gradients.
     let accuracy = Accuracy { tolerance: 1e-4, horizon: 1.0 };
     let stepper = Stepper::for_accuracy(top, accuracy, SO3::identity(), Vector3::new(0.5, 2.0, 12.0)).unwrap();
     assert!(!stepper.choice().to_string().contains("force gradient"));

@@ -357,7 +357,7 @@ fn assert_sliding<L>(
         near("Euler–Poincaré", inertia * acceleration + change, torque);
         let energy = 0.5 * xi.dot(&(inertia * xi)) + m * g * w.dot(&rho);
         assert!((system.hamiltonian(&momentum, &w).unwrap() - energy).abs() <= 1e-13 * (1.0 + energy.abs()));
-        // The right-hand side takes w from the attitude, here that of a fixed vector.
+        // The right-hand side computes `w` from the attitude, here for a vector fixed in space.
         let numbers = RightHandSide::new(system.clone()).unwrap();
         let (_, rate) = numbers.rates(&SO3::identity(), &momentum).unwrap();
         near("for a solver", rate, system.lie_poisson(&momentum, &Vector3::z()).unwrap().0);

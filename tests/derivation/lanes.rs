@@ -204,7 +204,7 @@ fn an_unsolvable_lane_leaves_all_as_they_were() {
         "{refused:?}"
     );
     assert_eq!(state, before);
-    // Without that lane the others move.
+    // The other lanes move if that lane has a solution.
     lanes[1].velocity = Vector3::x();
     assert_independent::<WideF64x4>(&lanes, 0.01, 10);
 }

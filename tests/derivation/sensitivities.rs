@@ -87,7 +87,7 @@ fn of_one_solve() {
     for scaled in ALL {
         let (stepper, mut state) = start(scaled, Dual64::from(1.0).derivative());
         for _ in 0..STEPS {
-            // The guesses are zero, and one without a derivative.
+            // The guess is zero, or a number without a derivative.
             let (momentum, vertical) = (state.momentum(), state.advected());
             let cold = stepper.flow().step(&momentum, &vertical, &Vector3::zeros()).unwrap();
             let constant = cold.coordinates.map(|entry| Dual64::from(entry.re * (1.0 + 1e-4)));

@@ -142,7 +142,7 @@ fn flow_on_increments_as_printed() {
         let missed = (left - right).norm() * H;
         assert!(missed <= ROUNDING, "(3.16): off by {missed:e}");
         assert!((left + right).norm() * H > 1e-5, "the right side counts");
-        // [LML05]: F⁺J_d − J_dF⁺ᵀ − J_dF + FᵀJ_d = h² S(M⁺).
+        // The equation of \[LML05\]: F⁺J_d − J_dF⁺ᵀ − J_dF + FᵀJ_d = h² S(M⁺).
         let theirs = after * J_d - J_d * after.transpose() - J_d * before + before.transpose() * J_d;
         let missed = (theirs - hat(&(seen.cross(&rho) * mg)) * (H * H)).norm();
         assert!(missed <= ROUNDING, "[LML05]: off by {missed:e}");

@@ -98,7 +98,7 @@ impl Write for Shared {
     }
 }
 
-/// A full disk.
+/// A writer to a full disk.
 struct Full;
 
 impl Write for Full {

@@ -11,7 +11,7 @@ struct Body {
     A: nalgebra::Matrix3<f64>,
 }
 
-/// Such a body on SE(2) with a symmetric matrix.
+/// A planar body on SE(2) with a symmetric matrix that may be singular.
 #[lagrangian(group = SE2, l_d = ((F - I) * (A + A.transpose()) * (F - I).transpose()).trace() / (2.0 * h))]
 struct Planar {
     A: Matrix3<f64>,

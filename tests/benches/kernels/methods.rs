@@ -28,7 +28,7 @@ fn kernel(scene: &Rc<Scene>, method: Method) -> Kernel {
     let (scene, method) = (Rc::clone(scene), Rc::new(method));
     Kernel::new(method.name.clone(), move || {
         let (scene, method) = (Rc::clone(&scene), Rc::clone(&method));
-        // It is set up once for all batches.
+        // The stepper is constructed once for all batches.
         let mut ready: Option<(u32, Prepared)> = None;
         Ok(move |steps: u32| {
             let run = match ready.take() {

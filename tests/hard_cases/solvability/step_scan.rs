@@ -9,7 +9,7 @@ use liestep::motion::DiscreteLiePoisson;
 use liestep::prelude::*;
 use nalgebra::Vector3;
 
-/// Other bodies, other directions: near the fold nothing but a rotation on the branch of the identity comes out, and
+/// Random bodies and directions near the fold: a step returns a rotation on the branch of the identity or an error, and
 /// `J_min ≤ h|a| ≤ J_max` at the fold.
 #[test]
 fn s1_random_momenta_step_up_to_the_fold() {

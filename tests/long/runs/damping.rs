@@ -1,6 +1,6 @@
-//! P6: damping takes energy and turns nothing over, however strong it is against the inertia and the step. Halves of a
-//! viscous torque at the two ends of a step, as the discrete Lagrange–d'Alembert principle has them at first sight,
-//! multiply a spin by `(1 − x/2)/(1 + x/2)` with `x = c h/J`, and fail this from `x = 2` on.
+//! P6: damping reduces the energy and reverses no turn, however strong it is compared with the inertia and the step.
+//! Halves of a viscous torque at the two ends of a step, as the discrete Lagrange–d'Alembert principle has them at
+//! first sight, multiply a spin by `(1 − x/2)/(1 + x/2)` with `x = c h/J`, and fail this from `x = 2` on.
 
 use checks::random::Random;
 use liestep::effects::{Drag, MagneticDamping, Torque};
@@ -28,10 +28,10 @@ fn magnetic_damping(k: f64, field: Vector3<f64>, moments: [f64; 3]) -> MagneticD
     MagneticDamping { k, field, J: Inertia::from_principal_moments(moments.into()).unwrap() }
 }
 
-/// Below, squares of Newton's unknown are no longer numbers.
+/// The velocity below which squares of Newton's unknown underflow.
 const NOTHING: f64 = 1e-140;
 
-/// The spins about one principal axis, from 1.5 rad/s on, until nothing is left of them.
+/// The velocities about one principal axis, from 1.5 rad/s down to underflow.
 fn spins<L: Regular<Scalar = f64, Group = SO3>>(scene: L, axis: usize, count: usize) -> Vec<f64> {
     let stepper = Stepper::new(scene, STEP).unwrap();
     let mut state = stepper.start(SO3::identity(), Vector3::ith(axis, 1.5)).unwrap();
@@ -54,7 +54,7 @@ fn p6_a_spin_decays_and_keeps_its_sign() {
     for moments in BODIES {
         for (axis, x) in (0..3).flat_map(|axis| STRENGTHS.map(|x| (axis, x))) {
             let c = x * moments[axis] / STEP;
-            // Across the field the damping is that of drag.
+            // The damping about an axis across the field is that of drag.
             let field = Vector3::ith((axis + 1) % 3, 2.0);
             let runs = [
                 spins(body(moments) + drag(c, moments), axis, 2000),

@@ -264,7 +264,7 @@ fn each_lane_of_a_group_that_is_inverted_is_one() {
     assert!(matches!(Stepper::new(Floating { K }, 0.01), Err(SetupError::SingularKinetic { body: None, .. })));
 }
 
-/// A rotating body.
+/// A rotating body whose step has no solution about its third axis beyond a right angle.
 #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Turning<T> {
