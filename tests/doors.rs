@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 /// The tip by the method DOP853 of `SciPy` in quaternions, at a tolerance of 1e-13.
 const TIP: [f64; 3] = [0.576_090_70, 0.407_715_11, 0.708_440_47];
 
-/// The first listing of README in a language whose text begins with `beginning`.
+/// The first listing of README in this language that starts with `beginning`.
 fn listing(language: &str, beginning: &str) -> String {
     let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")).unwrap();
     let fence = format!("```{language}\n");

@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 )]
 #[derive(Clone, Debug)]
 pub struct Top<T: Real> {
-    /// About the pivot, kg m².
+    /// Inertia about the pivot, kg m².
     pub inertia: NonstandardInertia<T>,
     /// The weight times the centre of mass, N m.
     pub lever: Vector3<T>,

@@ -25,7 +25,7 @@ fn top() -> (Top, SO3, Vector3<f64>) {
 
 type Top = Sum<RigidBody, Gravity>;
 
-/// A body of several.
+/// A rigid body with its weight, one of several.
 #[lagrangian(
     group(F = SO3, d = R3),
     advected(x = d.seen_from(space)),
@@ -52,7 +52,7 @@ struct Attraction {
     b: Vector3<f64>,
 }
 
-/// How far apart two motions are.
+/// The distance of two motions.
 fn apart<G: LieGroup<Scalar = f64>, A: Advected<G>>(a: &At<G, A>, b: &At<G, A>) -> f64 {
     let [a, b] = [a, b].map(|motion| {
         let mut all = Vec::new();
@@ -417,7 +417,7 @@ fn a_density_comes_back() {
 fn a_close_pass_with_a_density() {
     let body = FallingBody { m: 1.0, J_d: disc(), g: 0.0, up: Vector3::z() };
     let scene = Each::<2>::of([body; 2]) + Pairs::<2>::of([Attraction { a: Vector3::zeros(), b: Vector3::zeros() }]);
-    // At the far end of an orbit with pericentre 0.001.
+    // The bodies start at the far end of an orbit with pericentre 0.001.
     let far = |x: f64| (SO3::identity(), R3::from(Vector3::x() * x));
     let mut velocity = [Vector6::zeros(); 2];
     velocity[1][4] = 0.5 * (2.0 * 0.001 / 1.999_f64).sqrt();

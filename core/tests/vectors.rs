@@ -22,7 +22,7 @@ fn top() -> Top<f64> {
     PrincipalBody { J_d } + Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.1, 0.2, 0.3), up: Vector3::z() }
 }
 
-/// Where the top of a lane starts: each leans and spins otherwise.
+/// The start of the top of a lane: each leans and spins differently.
 fn start(lane: usize) -> (SO3, Vector3<f64>) {
     let k = lane as f64;
     (SO3::from_euler_angles(0.3 * k, 1.0 - 0.2 * k, 0.1), Vector3::new(0.5, 0.4 * k - 1.0, 3.0 + k))

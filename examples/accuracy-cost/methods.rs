@@ -32,7 +32,7 @@ pub struct Method {
 /// The family of a method, by the structure that it preserves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// The Poisson structure and the momentum maps.
+    /// Methods that conserve the Poisson structure and the momentum maps.
     Poisson,
     /// No structure: an explicit Runge–Kutta method.
     Rival,

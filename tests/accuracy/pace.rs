@@ -24,7 +24,7 @@ fn rewritten(body: &Needle, F: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
     kinetic + 0.5 * step * (1.0 / body.gap(w) + 1.0 / body.gap(&next)) + step * body.energy
 }
 
-/// The derived terms are the derivatives of the rewritten Lagrangian.
+/// The derived terms of a declaration with a pace are the derivatives of the rewritten Lagrangian.
 #[test]
 fn the_rewriting() {
     let body = Needle { energy: -1.3, ..Needle::new(0.8) };

@@ -117,7 +117,7 @@ fn shorter_steps_end_where_errors_stop_falling() {
     // At h = 1 the error is 1, which is another motion; the floor begins at the twelfth, and three more confirm it.
     assert_eq!(table.rows().first().map(|row| row.step), Some(0.5));
     assert_eq!(table.rows().len(), 11 + 3);
-    // Every second run fails.
+    // The table leaves out runs that fail, as every second one does here.
     let mut fails = false;
     let half = Refinement::timed(
         steps().take(9),

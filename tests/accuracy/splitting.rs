@@ -92,7 +92,7 @@ fn force_gradients_of_any_potential() {
     }
 }
 
-/// The top has no closed exact flow.
+/// Splittings with a declared kinetic flow have their order for a top without a closed exact flow.
 #[test]
 fn declared_kinetic_flows_keep_the_order() {
     let chaotic = (TOPS[3], 10.0);

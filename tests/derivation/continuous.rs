@@ -174,7 +174,7 @@ struct Pull {
     up: Vector3<f64>,
 }
 
-/// The torque of the scene.
+/// The torque of a scene, from the rate of the momentum.
 fn torque<L>(scene: &L, velocity: &Vector3<f64>, w: &L::Advected) -> Vector3<f64>
 where
     L: ContinuousLagrangian<Scalar = f64, Group = SO3>,

@@ -290,7 +290,7 @@ fn the_tangent_of_another_plan_is_refused() {
     let _ = split.linearised().expect("derivatives").step(&mut state, &mut tangent);
 }
 
-/// For a step of zero all derivatives with respect to parameters are zero.
+/// A step of zero length has zero derivatives with respect to all parameters.
 #[test]
 fn without_a_step_nothing_moves() {
     let stepper = Stepper::new(top::<f64>(None), 0.0).expect("a stepper");

@@ -36,7 +36,7 @@ struct Divided {
     up: Vector3<f64>,
 }
 
-/// The message, or an empty text.
+/// The message of a refused scene, or an empty text.
 macro_rules! refusal {
     ($scene:expr) => {
         Stepper::new($scene, 0.01).err().map(|error| error.to_string()).unwrap_or_default()

@@ -159,7 +159,7 @@ fn a_function_without_a_value_stops_its_member() {
         let steps: Vec<u64> = shard.outcome.failures.iter().map(|failed| failed.steps).collect();
         assert_eq!((shard.outcome.finished, steps), (0, vec![40, 40]));
     }
-    // No value from the start on.
+    // A function that has no value from the start on.
     let never = Section::new(Event::crossing(), |_: &Moment<'_, Top>| f64::NAN);
     let shard = tops(2, STEPS).section(never).chunk(0, &|| false).unwrap();
     assert_eq!((shard.outcome.finished, shard.outcome.failures.len(), shard.outcome.failures[0].steps), (0, 2, 0));

@@ -167,7 +167,7 @@ fn late_path(method: &mut impl Method) -> Result<Path, Failure> {
         let next: Vector3<f64> = method.sample().attitude.column(2).into();
         path.tilt = extended(path.tilt, next.xy().norm().atan2(next.z));
         path.length = extended(path.length, next.norm());
-        // The sine also serves jumps of the azimuth by a full turn.
+        // The sine of a difference isn't affected by jumps of the azimuth by a full turn.
         let goes_forwards = (azimuth(&next) - azimuth(&tip)).sin() > 0.0;
         path.turns_back += u32::from(forwards && !goes_forwards);
         (tip, forwards) = (next, goes_forwards);

@@ -1,4 +1,4 @@
-//! The cost of the trials of a choice, and their end.
+//! The cost of the trial runs of a choice by accuracy, and the ends of these runs.
 
 use core::ops::Add;
 

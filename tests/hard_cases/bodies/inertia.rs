@@ -24,7 +24,7 @@ fn conversions_agree_with_the_integrals() {
     for _ in 0..100 {
         let (nonstandard, ordinary) = integrals(&mut random);
         let (j_d, j) = (NonstandardInertia::new(nonstandard).unwrap(), Inertia::new(ordinary).unwrap());
-        // Sums of ten terms.
+        // The bound is the rounding of sums of ten terms.
         assert!(relative(j_d.to_inertia().as_matrix(), &ordinary) < 1e-15);
         assert!(relative(j.to_nonstandard().as_matrix(), &nonstandard) < 2e-15);
         assert!(relative(j_d.to_inertia().to_nonstandard().as_matrix(), &nonstandard) < 2e-15);
@@ -32,7 +32,7 @@ fn conversions_agree_with_the_integrals() {
     }
 }
 
-/// Reading A of the thesis' body.
+/// Diagonals of `J_d` and principal moments construct the thesis' body, read as in case A.
 #[test]
 fn diagonals_and_principal_moments() {
     let (diagonal, moments) = (Vector3::new(2.0, 2.0, 1.0), Vector3::new(3.0, 3.0, 4.0));

@@ -33,7 +33,7 @@ where
     let a = momentum + L::kick_before(&top.constants(fold), w);
     let moments = top.inertia(&top.advected()).symmetric_eigenvalues();
     let size = fold * a.norm();
-    // Six digits of the bisection.
+    // The bisection has six digits.
     assert!(size > moments.min() * 0.999_99 && size < moments.max() * 1.000_01, "{size} is outside {moments}");
     let mut last = 0.0;
     for fraction in [0.1, 0.5, 0.9, 0.99, 0.999] {

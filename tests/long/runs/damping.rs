@@ -10,7 +10,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 const STEP: f64 = 0.05;
 
-/// `c h` over a moment of inertia.
+/// The strengths of damping: `c h` over a moment of inertia.
 const STRENGTHS: [f64; 13] = [1e-3, 1e-2, 0.1, 0.5, 1.0, 1.9, 2.1, 5.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 
 /// A body of ordinary shape, nearly a plate, nearly a rod, and a sphere.
@@ -48,7 +48,7 @@ fn spins<L: Regular<Scalar = f64, Group = SO3>>(scene: L, axis: usize, count: us
     spins
 }
 
-/// `c h/J` on every axis of every body, over nine powers of ten.
+/// A spin decays without changing its sign, for `c h/J` over nine powers of ten on every axis of every body.
 #[test]
 fn p6_a_spin_decays_and_keeps_its_sign() {
     for moments in BODIES {
@@ -87,15 +87,15 @@ fn rise<L: Regular<Scalar = f64, Group = SO3>>(scene: L, velocity: Vector3<f64>)
     rise
 }
 
-/// In any turn: of a free body with drag the energy falls in every step of less than 158°, for every physical inertia.
-/// In a field it stays where there is nothing left but a turn about that.
+/// The energy of a free body with drag falls in every step of less than 158°, in any turn and for every physical
+/// inertia. In a field it stays where there is nothing left but a turn about that.
 #[test]
 fn p6_energy_falls() {
     let mut r = Random::new(6);
     for moments in BODIES {
         for x in STRENGTHS {
             for sample in 0..20 {
-                // Up to 60° a step without the damping.
+                // The velocity would turn the body by up to 60° a step without the damping.
                 let velocity = r.direction() * (1.0 / STEP) * r.signed().abs();
                 let c = x * moments[sample % 3] / STEP;
                 let most = rise(body(moments) + drag(c, moments), velocity);
@@ -138,7 +138,7 @@ fn p6_a_field_leaves_a_turn_about_the_major_axis() {
     for (k, excess) in [(0.2, 1e-12), (20.0, 0.01), (2e6, 0.5)] {
         let stepper = Stepper::new(body(moments) + magnetic_damping(k, field, moments), STEP).unwrap();
         let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
-        // Nearly about the minor axis.
+        // The body turns nearly about its minor axis.
         let mut state = stepper.start(attitude, Vector3::new(2.0, 0.1, 0.1)).unwrap();
         let along = state.momentum_along(&field);
         let least = along * along / (2.0 * 4.5);

@@ -20,8 +20,7 @@ fn sixth() -> SixthOrderTop {
     body()
 }
 
-/// Relative changes: of the energy's mean between the first and the last tenth, and at the end of `w·w`, `p·w` and
-/// `p₃`.
+/// Relative changes over a run:
 #[derive(Debug)]
 struct Kept {
     energy: f64,

@@ -39,7 +39,7 @@ fn assert_kept(name: &str, start: &TopMotion, end: &TopMotion) {
     println!("{name}: ‖RᵀR − I‖ {orthogonality:.1e}, |w|² {length:.1e}, p·w {vertical:.1e}, R p {momentum:.1e}");
     assert!(orthogonality <= 2e-12, "{name}: ‖RᵀR − I‖ = {orthogonality:e}");
     assert!(length <= 3e-12 && vertical <= 3e-12 && momentum <= 3e-12, "{name}: {length:e} {vertical:e} {momentum:e}");
-    // The two haven't parted: `w` is what the attitude sees.
+    // The advected vector has not drifted away from the attitude: `w` is what the attitude sees.
     let seen = end.attitude().as_matrix().row(2).transpose();
     assert!((end.advected() - seen).norm() <= 2e-12, "{name}");
 }

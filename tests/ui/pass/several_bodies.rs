@@ -118,7 +118,7 @@ where
 #[derive(Clone, Copy)]
 #[allow(dead_code)]
 #[lagrangian(
-    // The last argument comes first.
+    // The arguments are in an unusual order, the last one first.
     l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
         + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
         + 0.5 * h * k * (Q.trace() + (F_1.transpose() * Q * F_2).trace()),
@@ -138,7 +138,7 @@ pub struct Adorned {
     J_1: NonstandardInertia,
 }
 
-// Names of groups and keywords are names, too.
+// Names of groups and keywords may be names of increments.
 #[lagrangian(
     group(r#fn = SO3, R1 = SO3),
     advected(r#type = R1.seen_from(r#fn)),
@@ -214,7 +214,7 @@ struct Universal {
 )]
 #[derive(Clone)]
 struct Cardan {
-    /// m.
+    /// Point of the body above, m.
     pub above: Vector3<f64>,
     below: Vector3<f64>, // m
     #[allow(unused)]

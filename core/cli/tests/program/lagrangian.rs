@@ -18,7 +18,7 @@ fn it_has_the_rows_of_the_librarys_effects() {
     let folder = folder("lagrangian");
     for method in ["", "method = { composition = \"Suzuki 4\" }\n"] {
         let [own, library] = [TOP, BY_EFFECTS].map(|text| rows(&folder, &format!("{text}{method}")));
-        // Energies are summed in another order.
+        // Energies are compared to rounding, as they are summed in another order.
         let motion = |rows: &[Vec<f64>]| rows.iter().map(|row| row[..4].to_vec()).collect::<Vec<_>>();
         assert_eq!((own.len(), motion(&own)), (201, motion(&library)));
     }

@@ -86,7 +86,7 @@ fn multipliers_are_the_price_of_the_target() {
             }
         };
         let slope = (beside(1e-4) - beside(-1e-4)) / 2e-4;
-        // A multiplier is minus the derivative.
+        // A multiplier is minus the derivative of the least cost.
         let found = -plan.multipliers[k];
         assert!((found - slope).abs() < 1e-6 * (1.0 + slope.abs()), "{k}: {found}, not {slope}");
     }

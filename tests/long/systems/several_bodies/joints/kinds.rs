@@ -285,7 +285,7 @@ fn a_wheel_on_its_axle() {
 /// A joint with dependent functions is named at the start; an attitude off the group is refused, too.
 #[test]
 fn a_joint_that_repeats_itself() {
-    /// The height of a point, twice, and then perhaps a function whose slope is zero.
+    /// A constraint with the height of a point, twice, and then perhaps a function whose slope is zero.
     #[derive(Clone, Copy, Debug, PartialEq)]
     struct Heights([f64; 2]);
     impl Constraint<2> for Heights {
