@@ -207,7 +207,7 @@ fn the_order_is_read_off_finite_errors_above_zero() {
     let squares = Refinement::of(halvings.map(|h| (h, h * h)));
     assert!((squares.order_above(0.0).unwrap() - 2.0).abs() < 1e-12);
     for odd in [f64::INFINITY, f64::NAN, 0.0] {
-        // A rising error beside four others doesn't count;
+        // A row with such a number beside four others doesn't count; in place of one of these it leaves too few.
         let with = |first| Refinement::of([first].into_iter().chain(halvings.map(|h| (h, h * h))));
         assert_eq!(with((0.8, odd)).order_above(-1.0), squares.order_above(0.0));
         assert_eq!(with((odd, 0.7)).order_above(-1.0), squares.order_above(0.0));

@@ -80,7 +80,8 @@ struct Aligned {
     axis: Vector3<f64>,
 }
 
-/// Two coupled bodies end with the velocity that a solver of order eight finds at a tolerance of 1e-12;
+/// Two coupled bodies end with the velocity that a solver of order eight finds at a tolerance of 1e-12; a step of 2.5
+/// ms conserves six digits of the energy.
 #[test]
 fn two_coupled_bodies_move_as_by_a_solver() {
     fn end<L: Regular<Scalar = f64, Group = [SO3; 2]>>(scene: L) -> (f64, Vector3<f64>) {

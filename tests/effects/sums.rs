@@ -115,7 +115,8 @@ fn gravity(top: &HeavyTop) -> Gravity {
     Gravity { m: top.m, g: top.g, rho: top.rho, up: top.up }
 }
 
-/// A body plus gravity is the heavy top, asymmetric and with the centre of mass off the axes;
+/// A body plus gravity is the heavy top, asymmetric and with the centre of mass off the axes; the second inertia isn't
+/// diagonal.
 #[test]
 fn body_and_gravity_are_the_heavy_top() {
     let top = HeavyTop::asymmetric();

@@ -10,7 +10,7 @@ use num_dual::Dual64;
 
 use super::dual::{STEP, assert_linearised};
 
-/// The parameters of the scene, one of which may have a derivative;
+/// The parameters of the scene, one of which may have a derivative; the entries of a symmetric matrix vary together.
 pub(crate) struct Numbers<T> {
     next: usize,
     varied: Option<(usize, T)>,

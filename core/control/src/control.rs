@@ -90,7 +90,7 @@ where
     }
 
     /// Selects the inputs of each step: the scalars in these places of an input like this one, each once, in the order
-    /// of [`Input::scalars`];
+    /// of [`Input::scalars`]; the others stay as they are.
     #[must_use]
     pub fn input(self, like: InputOf<S>, places: impl IntoIterator<Item = usize>) -> Self {
         Self { like, places: places.into_iter().collect(), ..self }

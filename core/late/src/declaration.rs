@@ -61,7 +61,7 @@ impl<C> Ready<C> {
         self.arrays >> array as u16 & 1 == 1
     }
 
-    /// Whether the program reads constants alone:
+    /// Whether the program reads constants alone: its outputs don't change.
     pub(crate) const fn reads_constants_alone(&self) -> bool {
         self.arrays & !(1 << Array::Constants as u16) == 0
     }

@@ -1,4 +1,5 @@
-//! Whole steps on groups that a text declares: order, momentum in space and the group's relation;
+//! Whole steps on groups that a text declares: order, momentum in space and the group's relation; compositions,
+//! substeps and prescribed values as by typed steppers; errors.
 
 use declarations::FullTop;
 use liestep::mechanics::Effect as _;

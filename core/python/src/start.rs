@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::failure::Failure;
 
 /// The start of a motion: the attitude as a quaternion, as the entries of a matrix row by row, or the identity if it is
-/// empty;
+/// empty; and a velocity.
 #[derive(Clone, FromPyObject)]
 pub(crate) struct Start {
     pub(crate) attitude: Vec<f64>,

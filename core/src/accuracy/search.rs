@@ -345,7 +345,8 @@ impl Survey<'_> {
         Some(self.ladders[index].of_run((SHORTER * steps, a_step)))
     }
 
-    /// Lower bounds of the steps and operations expected of a method without a small enough error here;
+    /// Lower bounds of the steps and operations expected of a method without a small enough error here; with one step,
+    /// if that is too long for this part.
     fn bound(&self, index: usize, error: f64) -> (f64, f64) {
         let ladder = &self.ladders[index];
         ladder.of_run((SHORTER * ladder.bound(error).0, ladder.least(1.0) - ladder.least(0.0)))

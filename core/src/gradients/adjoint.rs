@@ -147,7 +147,7 @@ where
 {
     type Output = Result<(), StepError>;
 
-    /// AVX is used for its instructions with three operands;
+    /// AVX is used for its instructions with three operands; no computation acts on four numbers at a time.
     const VECTORS: Vectors = Vectors::Four;
     const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 

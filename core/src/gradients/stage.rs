@@ -340,7 +340,7 @@ pub(super) type WayBack<'a, G> = (&'a mut Cotangent<<G as LieGroup>::Vector>, &'
 /// A pass over the stages of a step, by the derivatives of the library's own plans.
 #[doc(hidden)]
 pub trait Pass<G: LieGroup> {
-    /// Whether the pass needs derivatives by parameters;
+    /// Whether the pass needs derivatives by parameters; those of an exact flow may otherwise be left out.
     fn asks_for_parameters(&self) -> bool;
 
     /// The gradients of a reverse pass: by the state after the stage, to be replaced by that before it, and by the

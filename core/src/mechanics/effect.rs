@@ -210,8 +210,8 @@ pub trait Effect: Term {
         Self::DERIVATION.to_owned()
     }
 
-    /// [`INERTIA_IS_CONSTANT`](Self::INERTIA_IS_CONSTANT) of a value: the type of an effect that is declared at run
-    /// time doesn't determine it.
+    /// Whether the inertia of this value is constant, as by [`INERTIA_IS_CONSTANT`](Self::INERTIA_IS_CONSTANT): the
+    /// type of an effect that is declared at run time doesn't determine it.
     #[must_use]
     fn has_constant_inertia(&self) -> bool {
         Self::INERTIA_IS_CONSTANT
@@ -229,13 +229,13 @@ pub trait Effect: Term {
         Self::DENOMINATORS
     }
 
-    /// [`PARTS`](Self::PARTS) of a value, which may lack parts that its type has.
+    /// The parts of a value, some of the [`PARTS`](Self::PARTS) of its type.
     #[must_use]
     fn parts(_: &Self::Constants) -> Parts {
         Self::PARTS
     }
 
-    /// [`APART`](Self::APART) of a value, which may have more blocks than its type.
+    /// The independent blocks of a value, which may be more than the [`APART`](Self::APART) of its type.
     #[must_use]
     fn apart(_: &Self::Constants) -> Blocks {
         Self::APART

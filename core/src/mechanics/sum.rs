@@ -164,7 +164,7 @@ where
                                       Jacobians and energies, each added; see DERIVATION of either\n";
 
     fn derivation(&self) -> String {
-        // A blank line between the derivations of two terms;
+        // A blank line between the derivations of two terms; an inner sum has its own.
         format!("{}\n{}", self.first.derivation(), self.second.derivation())
     }
 

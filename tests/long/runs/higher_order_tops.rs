@@ -20,7 +20,8 @@ fn sixth() -> SixthOrderTop {
     body()
 }
 
-/// Relative changes over a run:
+/// Relative changes over a run: of the energy's mean between the first and the last tenth, and at the end of `w·w`,
+/// `p·w` and `p₃`.
 #[derive(Debug)]
 struct Kept {
     energy: f64,

@@ -320,7 +320,7 @@ impl MatrixFactor {
         Some(words.multiply(square, Value::of(factor)))
     }
 
-    /// The factor's matrix in an array with the entries of all factors;
+    /// The factor's matrix in an array with the entries of all factors; entries that all elements share are known.
     pub(super) fn read(&self, array: Array) -> Matrix {
         self.constant_rows(self.read_all(array))
     }

@@ -58,7 +58,7 @@ fn the_limit_of_a_root() {
     assert_eq!(limit(&l(root, '+'), &l(root, '+')), Some(true));
     assert_eq!(limit(&l(root, '+'), &l(turned, '+')), Some(false));
     assert_eq!(limit(&l(root, '+'), &l(root, '-')), Some(false));
-    // An `l` without a value at any point is neither confirmed nor denied;
+    // An `l` without a value at any point is neither confirmed nor denied; a declaration with it is refused before.
     for undefined in ["1.0 / (v.norm_squared() - v.norm_squared())", "1.0 / v[0].powi(0).ln()"] {
         assert_eq!(limit(&l(undefined, '+'), &l(undefined, '+')), None, "{undefined}");
         let refused = expanded(&l(undefined, '+'), fields).to_string();

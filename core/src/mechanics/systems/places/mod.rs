@@ -73,7 +73,8 @@ pub trait Places<E: Effect> {
         *all
     }
 
-    /// The block-diagonal matrix of the system, from a matrix for each place at one body;
+    /// The block-diagonal matrix of the system, from a matrix for each place at one body; zero for bodies without a
+    /// place.
     fn squares(of: impl FnMut(At) -> Square<E>) -> SquareOf<Self::Group>;
 
     /// The vector and the matrix of the system, from those of each place.

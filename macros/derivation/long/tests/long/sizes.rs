@@ -8,7 +8,8 @@ use crate::common::{derived, expanded, is_refused};
 
 /// The default stack of a thread, in bytes.
 const STACK: usize = 2 << 20;
-/// The time after which an expansion counts as a hang, on a machine shared with twenty others:
+/// The time after which an expansion counts as a hang, on a machine shared with twenty others: the largest accepted
+/// declaration takes some seconds of its own.
 const PATIENCE: Duration = Duration::from_secs(600);
 
 const ITEM: &str =

@@ -45,7 +45,7 @@ impl GroupName {
 pub(super) const ONE_OR_SEVERAL: &str =
     "write the name of a group, `group = SO3`, or those of several bodies, `group(F_1 = SO3, F_2 = SO3)`";
 
-/// `SO3`, `own::Affine!`.
+/// Reads the name of a group, as `SO3` or `own::Affine!`.
 pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<GroupName> {
     let span = input.span();
     let mut path: Path = input.parse().map_err(|_| syn::Error::new(span, ONE_OR_SEVERAL))?;

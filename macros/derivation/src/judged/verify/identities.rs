@@ -162,7 +162,8 @@ impl<'a> Identities<'a> {
         Evaluation::new(values).of(self.of.tree).first()
     }
 
-    /// Compares the declared virtual work along the direction, of the displacement at each end alone;
+    /// Compares the declared virtual work along the direction, of the displacement at each end alone; their sum must be
+    /// the work of both.
     fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<DeclaredValues<T>, Objection> {
         let group = &self.of.derived.group;
         let work = |before: T, after: T| {

@@ -119,7 +119,7 @@ fn of_increments(factors: &[Generators]) -> StagedDeclaration {
     staged
 }
 
-/// A Newton iteration solves the linearised equation:
+/// A Newton iteration solves the linearised equation: the derivative by half the coordinates is that of dual numbers.
 fn is_linearised(name: &str, factors: &[Generators]) {
     let staged = of_increments(factors);
     let mut next = Residue::stream(19);
@@ -172,6 +172,7 @@ fn a_system_of_three_has_few_operations() {
     let staged = declared(&[named("SO3")], Vec::new());
     let count = |program: &Program| program.operations.len();
     let programs = Moving::of(&staged, Residue::stream(1)).step.programs;
-    // Counts of operations: the residual has three rows of six;
+    // Counts of operations: the residual has three rows of six; nine minors have three operations each, and the
+    // determinant five; a solution has the reciprocal and three rows of six, and both squares five.
     assert_eq!((count(&programs.iterate), count(&programs.again)), (18 + 32 + 32, 18 + 32));
 }

@@ -103,7 +103,7 @@ pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
     })
 }
 
-/// The logarithm of a rotation, `(θ/sin θ) vee(R)`;
+/// The logarithm of a rotation, `(θ/sin θ) vee(R)`; none if the trace is that of no rotation.
 fn logarithm(rotation: &Matrix) -> Matrix {
     let cosine = 0.5 * (rotation.trace() - 1.0);
     let angle = if (cosine - 1.0).abs() < 1e-12 { 0.0 } else { cosine.acos() };
@@ -178,7 +178,8 @@ impl Change<'_> {
     }
 }
 
-/// The values with all advected parameters moved by an element of a factor, passed with its inverse;
+/// The values with all advected parameters moved by an element of a factor, passed with its inverse; a plain vector is
+/// a covector.
 pub(super) fn carried(declaration: &Declaration, factor: usize, [g, inverse]: [&Matrix; 2], env: &Env) -> Env {
     let (mut moved, is_added) = (env.clone(), declaration.group.factor(factor).is_added);
     for w in declaration.advected.iter().filter(|w| !w.is_given) {
