@@ -46,10 +46,10 @@ pub(crate) struct Task {
 }
 
 /// The plan, and the exception raised during its search.
-type Found = (ControlPlan<Scene, OwnStep<Scene>>, Option<PyErr>);
+type PlanResult = (ControlPlan<Scene, OwnStep<Scene>>, Option<PyErr>);
 
 impl Task {
-    fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<Found, Failure> {
+    fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<PlanResult, Failure> {
         // A sum with more than four vectors advects the directions of space instead.
         let scene = match Scene::of(Declaration::sum(terms)?) {
             Err(LateError::Advected { .. }) => Scene::of(Declaration::sum_in_frames(terms)?)?,

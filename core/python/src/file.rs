@@ -30,9 +30,9 @@ pub(crate) fn library(name: &str) -> Option<&'static str> {
 }
 
 /// A sink that stops at Ctrl-C.
-struct Listening<'a>(&'a mut Columns, &'a Signals);
+struct InterruptibleColumns<'a>(&'a mut Columns, &'a Signals);
 
-impl Sink for Listening<'_> {
+impl Sink for InterruptibleColumns<'_> {
     fn begin(&mut self, columns: &[Column]) -> Result<(), SinkError> {
         self.0.begin(columns)
     }
@@ -79,7 +79,7 @@ impl File {
         let mut columns = Columns::new(0);
         let made = py.detach(|| {
             let signals = Signals::new();
-            let mut table = Listening(&mut columns, &signals);
+            let mut table = InterruptibleColumns(&mut columns, &signals);
             let made = match &self.0 {
                 Scene::Body(scene) => scene.run_with(&mut |_| (), Some(&mut table)),
                 Scene::System(system) => system.run_with(&mut |_| (), Some(&mut table)),

@@ -31,7 +31,7 @@ pub(crate) struct Course {
 }
 
 /// The results of a run.
-pub(crate) struct Recorded {
+pub(crate) struct RunRecord {
     pub(crate) columns: Columns,
     /// One table for each event, with a row for each occurrence.
     pub(crate) events: Vec<(Columns, Vec<bool>)>,
@@ -102,7 +102,7 @@ fn short(number: f64) -> f64 {
 }
 
 /// Makes the steps, and rows of all columns that [`Recorder`] has.
-pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course) -> Result<Recorded, Failure> {
+pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course) -> Result<RunRecord, Failure> {
     let is_varied = stepper.length(&state).is_some();
     let steps = steps_to(course.until, stepper.step_size(), !is_varied)?.saturating_sub(state.steps());
     let rows = match &course.times {
@@ -159,7 +159,7 @@ pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course)
         }
     }
     failure = failure.or_else(|| written.err().map(memory));
-    Ok(Recorded { columns, events: events.map_err(memory)?, steps, iterations, ending, failure })
+    Ok(RunRecord { columns, events: events.map_err(memory)?, steps, iterations, ending, failure })
 }
 
 impl Watch {

@@ -14,7 +14,7 @@ use nalgebra::SVector;
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
 use crate::failure::Failure;
-use crate::run::{Course, Recorded, record};
+use crate::run::{Course, RunRecord, record};
 use crate::start::{Start, started};
 
 pub(crate) type V<const N: usize> = SVector<f64, N>;
@@ -95,7 +95,7 @@ impl Scene {
     }
 
     /// The run by a method and a step.
-    pub(crate) fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<Recorded, Failure> {
+    pub(crate) fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<RunRecord, Failure> {
         let stepper = self.stepper(method)?;
         record(&stepper, started(&stepper, start)?, course)
     }
@@ -106,7 +106,7 @@ impl Scene {
         tolerance: f64,
         start: &Start,
         course: &Course,
-    ) -> Result<(Recorded, Choice), Failure> {
+    ) -> Result<(RunRecord, Choice), Failure> {
         let accuracy = Accuracy { tolerance, horizon: course.until };
         let (stepper, choice) = self.steps.accurate(&self.numbers, accuracy, start)?;
         Ok((record(&stepper, started(&stepper, start)?, course)?, choice))

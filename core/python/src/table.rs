@@ -122,13 +122,13 @@ impl Table {
 }
 
 /// A column as it is pickled: its name, its unit and its numbers.
-type Pickled = (String, String, Vec<f64>);
+type ColumnData = (String, String, Vec<f64>);
 
 #[pymethods]
 impl Table {
     /// A table of columns of one length.
     #[new]
-    fn new(columns: Vec<Pickled>) -> PyResult<Self> {
+    fn new(columns: Vec<ColumnData>) -> PyResult<Self> {
         let length = columns.first().map_or(0, |(.., numbers)| numbers.len());
         if columns.iter().any(|(.., numbers)| numbers.len() != length) {
             return Err(Failure::Of("ColumnError", "the columns of a table are of one length".to_owned()).into());
@@ -137,7 +137,7 @@ impl Table {
         Ok(Columns::of(columns.into_iter().map(of).collect()).into_table())
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (Vec<Pickled>,)) {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (Vec<ColumnData>,)) {
         let table = slf.get();
         let columns = table.columns.iter().enumerate();
         let of = |(place, column): (usize, &Column)| {
