@@ -170,7 +170,7 @@ where
         let (mut damping, mut iterations) = (0.0, 0);
         let (verdict, covariance, step) = loop {
             let Some((stages, value)) = self.value(&trial) else { return Err(ControlError::Unusable("derivative")) };
-            let seen = Seen::new(&value);
+            let seen = Directions::new(&value);
             let step = seen.decrease(&value).sqrt();
             if step <= self.tolerance {
                 let verdict = seen.unseen.clone().map_or(Verdict::Converged, |direction| Verdict::Unseen { direction });
@@ -298,7 +298,7 @@ where
         &self,
         trial: &Trial<S, P>,
         stages: &[Stage],
-        (value, seen): (&Value, &Seen),
+        (value, seen): (&Value, &Directions),
         damping: &mut f64,
     ) -> Option<Trial<S, P>> {
         // At the level of rounding the step is taken without a decrease.
@@ -321,7 +321,7 @@ where
 }
 
 /// The directions of the start and the constants, each with the information of the readings on it.
-struct Seen {
+struct Directions {
     /// The lengths that scale the second derivative along each coordinate to one.
     lengths: DVector<f64>,
     /// The eigenvalues, zero if a direction isn't determined, and eigenvectors of the scaled second derivatives.
@@ -330,7 +330,7 @@ struct Seen {
     unseen: Option<Vec<f64>>,
 }
 
-impl Seen {
+impl Directions {
     fn new(value: &Value) -> Self {
         let lengths = value.square.diagonal().map(|entry| if entry > 0.0 { entry.sqrt().recip() } else { 1.0 });
         let scaled =

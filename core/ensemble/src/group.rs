@@ -25,12 +25,12 @@ pub(crate) type Grouping<M> = fn(&[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)>
 pub(crate) type Start<M> = (M, <M as Integrator>::State);
 
 /// Members stepped together in lanes.
-struct Together<M: Batchable<AutoF64x8>> {
+struct LaneGroup<M: Batchable<AutoF64x8>> {
     batch: Batch<AutoF64x8, M>,
     before: <<M as InLanes<AutoF64x8>>::Together as Integrator>::State,
 }
 
-impl<M: Batchable<AutoF64x8> + 'static> Group<M> for Together<M> {
+impl<M: Batchable<AutoF64x8> + 'static> Group<M> for LaneGroup<M> {
     fn run(&mut self, steps: u64) {
         if steps == 1 {
             self.before = self.batch.states().clone();
@@ -60,7 +60,7 @@ pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(mut left: &[Start<M>])
     let mut groups: Vec<(Box<dyn Group<M>>, usize)> = Vec::new();
     while let Some((batch, count)) = Batch::<AutoF64x8, M>::of_first(&left[..left.len().min(LANES)]) {
         let before = batch.states().clone();
-        groups.push((Box::new(Together { batch, before }), count));
+        groups.push((Box::new(LaneGroup { batch, before }), count));
         left = &left[count..];
     }
     groups

@@ -56,7 +56,7 @@ type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec
 pub struct Section<M: Integrator> {
     event: Event,
     function: Box<Value<M>>,
-    /// The function in lanes, a [`Together`].
+    /// The function in lanes, a [`LaneFunction`].
     together: Option<Box<dyn Any + Send + Sync>>,
     only_first: bool,
     pub(crate) ends: bool,
@@ -68,7 +68,7 @@ pub struct Section<M: Integrator> {
 }
 
 /// A section's function of members in lanes.
-type Together<M> = Box<dyn Fn(&Moment<'_, <M as InLanes<AutoF64x8>>::Together>) -> AutoF64x8 + Send + Sync>;
+type LaneFunction<M> = Box<dyn Fn(&Moment<'_, <M as InLanes<AutoF64x8>>::Together>) -> AutoF64x8 + Send + Sync>;
 
 /// The recorded values of one crossing: for the columns, and for the reductions.
 pub(crate) struct Crossing {
@@ -135,7 +135,7 @@ impl<M: Integrator> Section<M> {
     where
         M: Batchable<AutoF64x8> + 'static,
     {
-        let function: Together<M> = Box::new(function);
+        let function: LaneFunction<M> = Box::new(function);
         self.together = Some(Box::new(function));
         self
     }
@@ -200,7 +200,7 @@ impl<M: Integrator> Section<M> {
     where
         M: Batchable<AutoF64x8> + 'static,
     {
-        let values = self.together.as_ref()?.downcast_ref::<Together<M>>()?(all);
+        let values = self.together.as_ref()?.downcast_ref::<LaneFunction<M>>()?(all);
         Some(core::array::from_fn(|lane| values.extract(lane)))
     }
 

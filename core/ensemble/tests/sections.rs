@@ -27,10 +27,10 @@ fn kept(now: &Moment<'_, Top>) -> [f64; 2] {
 }
 
 /// Members, and the bits of their recorded values.
-type Found = Vec<(u64, Vec<u64>)>;
+type MemberBits = Vec<(u64, Vec<u64>)>;
 
-fn found(shards: &[Shard], section: usize) -> Found {
-    let of_shard = |shard: &Shard| -> Found {
+fn found(shards: &[Shard], section: usize) -> MemberBits {
+    let of_shard = |shard: &Shard| -> MemberBits {
         let crossings = &shard.rows.crossings[section];
         let kept = |place: usize| crossings.columns.iter().map(|column| column[place].to_bits()).collect();
         crossings.row.iter().enumerate().map(|(place, row)| (shard.rows.member[*row], kept(place))).collect()
@@ -44,7 +44,7 @@ fn chunks(ensemble: &Ensemble<Top>) -> Vec<Shard> {
 
 #[test]
 fn crossings_are_those_of_each_member_alone() {
-    let mut expected: [Found; 2] = [vec![], vec![]];
+    let mut expected: [MemberBits; 2] = [vec![], vec![]];
     for (member, made) in made(MEMBERS) {
         let Ok((stepper, mut state)) = made else { continue };
         let [mut first, mut second] = [vec![], vec![]];

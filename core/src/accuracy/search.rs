@@ -45,7 +45,7 @@ struct Best {
 
 /// Reasons against methods that don't reach the tolerance.
 #[derive(Default)]
-struct Refused {
+struct Refusals {
     /// Steps of the first method with too many, whether they are a lower bound, and its name.
     many: Option<(f64, bool, String)>,
     /// The least tolerance that rounding permits.
@@ -70,7 +70,7 @@ struct Search<'a> {
     accuracy: Accuracy,
     start: Start,
     trials: Trials,
-    refused: Refused,
+    refused: Refusals,
 }
 
 /// The cheapest method for an accuracy, by operations.
@@ -88,7 +88,7 @@ pub(super) fn search(methods: &[Candidate], accuracy: Accuracy, start: &Start) -
         accuracy,
         start: start.clone(),
         trials: Trials::default(),
-        refused: Refused::default(),
+        refused: Refusals::default(),
     };
     search.found().ok_or_else(|| search.refusal())
 }
@@ -326,7 +326,7 @@ impl<'a> Search<'a> {
 
     /// The error of a failed search. Long steps may fail in any way, so that their failure comes last.
     fn refusal(&mut self) -> AccuracyError {
-        let Refused { many, floor, failure, .. } = core::mem::take(&mut self.refused);
+        let Refusals { many, floor, failure, .. } = core::mem::take(&mut self.refused);
         let (trials, tolerance) = (self.trials, self.accuracy.tolerance);
         match (floor, failure, many) {
             (Some(floor), ..) => AccuracyError::Unreachable { tolerance, floor, trials },

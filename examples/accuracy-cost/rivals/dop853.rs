@@ -8,12 +8,12 @@
 
 use workbench::top_equations::State;
 
-use super::embedded::{Embedded, Row, combination, mean_square, plus, stages};
+use super::embedded::{EmbeddedMethod, Row, combination, mean_square, plus, stages};
 use super::rates::Rates;
 
 pub struct Dop853;
 
-impl Embedded for Dop853 {
+impl EmbeddedMethod for Dop853 {
     const NAME: &'static str = "DOP853";
     const POWER: i32 = 8;
     type Stages = [State; 12];

@@ -8,12 +8,12 @@
 
 use workbench::top_equations::State;
 
-use super::embedded::{Embedded, Row, combination, mean_square, plus, stages};
+use super::embedded::{EmbeddedMethod, Row, combination, mean_square, plus, stages};
 use super::rates::Rates;
 
 pub struct Tsitouras5;
 
-impl Embedded for Tsitouras5 {
+impl EmbeddedMethod for Tsitouras5 {
     const NAME: &'static str = "Tsitouras 5";
     const POWER: i32 = 5;
     type Stages = [State; 7];

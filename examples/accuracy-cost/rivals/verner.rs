@@ -7,12 +7,12 @@
 
 use workbench::top_equations::State;
 
-use super::embedded::{Embedded, Row, combination, mean_square, plus, stages};
+use super::embedded::{EmbeddedMethod, Row, combination, mean_square, plus, stages};
 use super::rates::Rates;
 
 pub struct Verner9;
 
-impl Embedded for Verner9 {
+impl EmbeddedMethod for Verner9 {
     const NAME: &'static str = "Verner 9";
     const POWER: i32 = 9;
     type Stages = [State; 16];
