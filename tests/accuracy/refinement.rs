@@ -9,9 +9,9 @@ use liestep::{SetupError, StepError};
 use liestep_refinement::{Effort, Measurement, Reference, Refinement, RefinementError, convergence, work_precision};
 use workbench::measure::relative;
 
-type Made = (Stepper<HeavyTop>, State<SO3, Vector3<f64>>);
+type TopRun = (Stepper<HeavyTop>, State<SO3, Vector3<f64>>);
 
-fn looping() -> impl Fn(f64) -> Result<Made, SetupError> {
+fn looping() -> impl Fn(f64) -> Result<TopRun, SetupError> {
     let motion = Motion::looping();
     move |h| {
         let stepper = Stepper::new(motion.top.clone(), h)?;

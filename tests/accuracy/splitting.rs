@@ -1,7 +1,7 @@
 //! Kinetic-potential splittings.
 
 use checks::order::{End, TOPS, assert_order, counts, end, error};
-use checks::solvers::Counted;
+use checks::solvers::JacobianCounter;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, Motion, SixthOrderBody, Top as _};
 use liestep::accuracy::Accuracy;
 use liestep::effects::{GravityGradient, Rotor, Spring};
@@ -156,7 +156,7 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
 /// A scene without the derivative of its kick can be split, but not with force gradients.
 #[test]
 fn a_force_gradient_has_to_be_written() {
-    let top = Counted(HeavyTop::thesis());
+    let top = JacobianCounter(HeavyTop::thesis());
     let split = |scheme| Stepper::split(top.clone(), 0.01, symmetric(&top.0), scheme).map(|_| ());
     assert_eq!(split(SplittingScheme::NYSTROM_6), Ok(()));
     assert_eq!(split(SplittingScheme::FORCE_GRADIENT_2), Err(SetupError::NoForceGradient));

@@ -20,7 +20,7 @@ use nalgebra::{DVector, Vector3, Vector6};
     l_d = -0.25 * h * m * (w.dot(&rho).powi(2) + w.dot(&(F * rho)).powi(2)),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Leaning {
+struct EndPotential {
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
@@ -136,8 +136,8 @@ fn inertia(r: &mut Random) -> Inertia {
     NonstandardInertia::new(axes * nalgebra::Matrix3::from_diagonal(&extent) * axes.transpose()).unwrap().to_inertia()
 }
 
-fn leaning(r: &mut Random) -> Leaning {
-    Leaning { m: switched(r), rho: r.vector(), up: r.direction() }
+fn leaning(r: &mut Random) -> EndPotential {
+    EndPotential { m: switched(r), rho: r.vector(), up: r.direction() }
 }
 
 fn middle(r: &mut Random) -> Middle {

@@ -75,7 +75,7 @@ fn a_fast_wheel_turns_as_its_kinetic_term_says() {
     l_d = 0.5 * h * k * (axis.dot(&(Q * axis)) + (F_1 * axis).dot(&(Q * (F_2 * axis)))),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Aligned {
+struct AxisAlignment {
     k: f64,
     axis: Vector3<f64>,
 }
@@ -93,7 +93,7 @@ fn two_coupled_bodies_move_as_by_a_solver() {
         (stepper.energy(&state), stepper.velocity(&state).0[0])
     }
     let (first, second, aligned) =
-        (rigid([3.0, 2.5, 2.0]), rigid([1.1, 0.9, 0.5]), Aligned { k: 3.0, axis: Vector3::z() });
+        (rigid([3.0, 2.5, 2.0]), rigid([1.1, 0.9, 0.5]), AxisAlignment { k: 3.0, axis: Vector3::z() });
     let between = Between::<0, 1, 2>::of([aligned]);
     let (one, other) = (On::<0, 2>::of([first]), On::<1, 2>::of([second]));
     let found =

@@ -54,10 +54,10 @@ pub(crate) fn unit(number: Option<usize>) -> Option<(usize, Dual64)> {
 
 pub(crate) const J_D: Matrix3<f64> = Matrix3::new(2.0, 0.2, -0.1, 0.2, 1.6, 0.3, -0.1, 0.3, 2.4);
 
-pub(crate) type Held<T> = Sum<Sum<Sum<RigidBody<T>, Gravity<T>>, Spring<T>>, GravityGradient<T>>;
+pub(crate) type SpringTop<T> = Sum<Sum<Sum<RigidBody<T>, Gravity<T>>, Spring<T>>, GravityGradient<T>>;
 
 /// A body under three potentials.
-pub(crate) fn held<T: RealField + Copy>(n: &mut Numbers<T>) -> Held<T> {
+pub(crate) fn held<T: RealField + Copy>(n: &mut Numbers<T>) -> SpringTop<T> {
     let body = RigidBody { J_d: NonstandardInertia::new(n.symmetric(&J_D)).expect("a body") };
     let gravity = gravity(n);
     let spring = Spring {
@@ -76,9 +76,9 @@ fn inertia<T: RealField + Copy>(n: &mut Numbers<T>) -> Inertia<T> {
     Inertia::new(n.symmetric(&J)).expect("a body")
 }
 
-type Damped<T> = Sum<Sum<Held<T>, Rotor<T>>, Drag<T>>;
+type DampedTop<T> = Sum<Sum<SpringTop<T>, Rotor<T>>, Drag<T>>;
 
-fn damped<T: RealField + Copy>(varied: Option<(usize, T)>) -> Damped<T> {
+fn damped<T: RealField + Copy>(varied: Option<(usize, T)>) -> DampedTop<T> {
     let mut n = Numbers::new(varied);
     let held = held(&mut n);
     let rotor = Rotor { spin: n.vector(0.3, -0.2, 0.5) };

@@ -28,7 +28,7 @@ struct Point {
     advected(w = up),
     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * k / (m - 1.0) * w.dot(&rho),
 )]
-struct Divided {
+struct InfiniteConstant {
     J_d: NonstandardInertia,
     k: f64,
     m: f64,
@@ -69,7 +69,7 @@ fn a_negative_kinetic_part() {
 fn a_constant_that_is_not_finite() {
     let divided = |m| {
         let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0, 2.0, 2.0)).unwrap();
-        Divided { J_d, k: 1.0, m, rho: Vector3::z(), up: Vector3::z() }
+        InfiniteConstant { J_d, k: 1.0, m, rho: Vector3::z(), up: Vector3::z() }
     };
     assert_eq!(refusal!(divided(2.0)), "");
     assert!(refusal!(divided(1.0)).contains("constant"), "{}", refusal!(divided(1.0)));
