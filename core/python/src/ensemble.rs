@@ -31,7 +31,7 @@ pub(crate) struct Draw {
 pub(crate) type Draws = Vec<Draw>;
 
 impl Draw {
-    /// The member's number, with the name that ensembles of files give it: `velocity.3`.
+    /// The random number of a component in a member, by a name of its own: `velocity.3`.
     fn number(&self, member: &Member<'_>) -> f64 {
         let name = format!("{}.{}", self.of, self.place + 1);
         match self.kind.as_str() {
