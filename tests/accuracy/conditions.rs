@@ -141,8 +141,8 @@ fn times_shares(series: &Series<f64>, shares: impl Iterator<Item = Part>) -> Ser
     })
 }
 
-/// The distance of a splitting from `exp(A + B)` in the words of at most these numbers of letters, by their number of
-/// `B`.
+/// The largest difference of a splitting's coefficients of words in `A` and `B` from those of `exp(A + B)`; `longest` has
+/// the most letters of a word with one, two and more `B`.
 fn splitting_deviation(scheme: &SplittingScheme, longest: [usize; 3]) -> f64 {
     let one: Series<f64> = one(&[A, B], |word| match word.iter().filter(|letter| **letter == B).count() {
         0 => word.len() <= longest[0],

@@ -193,7 +193,7 @@ impl Declaration {
             return Err(LateError::TooMany(MOST));
         }
         let declaration = Self::of(make()?);
-        // A second thread that has derived it drops its own.
+        // If two threads have derived a declaration at once, the first result is stored and the second dropped.
         Ok(known().entry(name.to_owned()).or_insert_with(|| Box::leak(Box::new(declaration))))
     }
 

@@ -15,7 +15,7 @@ pub(super) const LARGEST_ERROR: f64 = 0.05;
 /// Excess of the power of an error's fall over the order, at most. It occurs if the potential is small.
 const BEYOND_THE_ORDER: f64 = 4.0;
 
-/// The cost of a method that doesn't know its own.
+/// The assumed cost of a method that doesn't state one.
 pub(super) const UNKNOWN: Cost = Cost { step: 1e3, iteration: 0.0, fewest: 0, once: 0.0 };
 
 /// A run to the horizon with `steps` steps.

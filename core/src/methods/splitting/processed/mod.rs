@@ -77,7 +77,7 @@ pub struct ProcessedSplitting<S: Effect, K: KineticFlow<Scalar<S>>> {
     #[shared]
     parts: Vec<Part>,
     kernel: Splitting<S, K>,
-    /// From the output to the end of the kernel's first share, from which all its steps are the same.
+    /// The stages from the output to the end of the kernel's first share, where all steps of the kernel begin.
     enter: Stages<K::Drift, Scalar<S>>,
     /// The stages from the end of the kernel's first share to the output.
     leave: Stages<K::Drift, Scalar<S>>,
