@@ -284,7 +284,7 @@ impl Method {
         <S::Group as Steppable<S>>::stepper(self, scene, h)
     }
 
-    /// The composition of a scheme that every group has; none for the own step.
+    /// The scheme's composition, for groups other than SO(3); none where the scheme is the Lagrangian's own step.
     ///
     /// # Errors
     ///
