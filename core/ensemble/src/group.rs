@@ -66,7 +66,7 @@ pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(mut left: &[Start<M>])
     groups
 }
 
-/// A member stepped alone.
+/// One member.
 struct SingleMember<M: Integrator> {
     stepper: M,
     state: M::State,

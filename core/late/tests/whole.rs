@@ -203,7 +203,7 @@ fn values_are_prescribed_for_a_step() {
     assert_eq!((whole.step_with(&mut state, &wrong), state), (Err(error), before));
 }
 
-/// Steppers with other numbers share the code, and make the steps of new steppers with these numbers.
+/// Steppers with other numbers share the code, and are those that are made anew.
 #[test]
 fn numbers_and_steps_are_replaced() {
     let whole = whole(0.02, "step");
