@@ -274,11 +274,12 @@ fn explained(defect: Defect, array: &ExprArray) -> syn::Error {
 const MOST_ROWS: usize = 8;
 
 fn decimal(expression: &Expr) -> syn::Result<Rational> {
-    let message = "write the entry of a generator as a decimal number: `-1.0`";
+    let message = "write the entry of a generator as a number: `-1.0`";
     let value = match plain(expression) {
         Expr::Unary(unary) if matches!(unary.op, syn::UnOp::Neg(_)) => -decimal(&unary.expr)?,
         Expr::Lit(literal) => match &literal.lit {
             syn::Lit::Float(float) => Rational::from_decimal(float.base10_digits()),
+            syn::Lit::Int(whole) if whole.suffix().is_empty() => Rational::from_decimal(whole.base10_digits()),
             _ => return Err(syn::Error::new_spanned(expression, message)),
         },
         _ => return Err(syn::Error::new_spanned(expression, message)),
