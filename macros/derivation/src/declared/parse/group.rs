@@ -28,6 +28,11 @@ impl GroupName {
         if self.is_own { None } else { built_in(&self.name()) }
     }
 
+    /// Whether the group is one of translations.
+    pub(super) fn is_translation(&self) -> bool {
+        self.built_in().is_some_and(|group| !group.is_so3) && IN_PRODUCTS.contains(&self.name().as_str())
+    }
+
     /// Whether the name may be an increment in the place of its group.
     pub(super) fn may_be_an_increment(&self) -> bool {
         let is_misspelled = !suggestion(&self.name(), NAMES).is_empty();
@@ -131,7 +136,7 @@ pub(super) fn product(named: Vec<(Ident, GroupName)>, errors: &mut Errors) -> (V
         }
         let known = match named.built_in() {
             Some(group) if group.is_so3 => Some(group),
-            Some(group) if IN_PRODUCTS.contains(&named.name().as_str()) => Some(group.added()),
+            Some(group) if named.is_translation() => Some(group.added()),
             _ => None,
         };
         if known.is_none() {

@@ -29,8 +29,11 @@ pub(super) fn check_names(
 }
 
 /// The names of a force's displacements on several bodies; empty for one body, where they are `eta` and `eta_next`.
-pub(super) fn displacements(named: Option<(Ident, Vec<Ident>)>, factors: &[Factor], errors: &mut Errors) -> Vec<Ident> {
-    let is_product = factors.len() > 1;
+pub(super) fn displacements(
+    named: Option<(Ident, Vec<Ident>)>,
+    (factors, is_product): (&[Factor], bool),
+    errors: &mut Errors,
+) -> Vec<Ident> {
     let Some((key, names)) = named else {
         if let Some(factor) = factors.first().filter(|_| is_product) {
             let message = format!(
