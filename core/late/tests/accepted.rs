@@ -80,7 +80,7 @@ fn an_extreme_step_from_a_vortex() {
     let start = (SO3::identity(), R3::from(Vector3::x()));
     let attitude = [TURNED.to_vec(), homogeneous(Vector3::x())].concat();
     let velocity = Vector6::new(0.0, 0.0, 0.0, 0.0, 1.0, 0.0);
-    for h in [1e200, -1e200] {
+    for h in [1e155, -1e155] {
         let stepper = Stepper::new(Vortex {}, h).expect("a stepper");
         let mut state = stepper.start(start, velocity).expect("a start");
         let whole: Whole = Whole::of(vortex, &[], h, "step".parse().expect("a method")).expect("a whole step");
