@@ -188,3 +188,20 @@ fn a_kinetic_energy_that_stiffens() {
     let apart = ends[0].iter().zip(&ends[1]).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
     assert!(apart < 1e-13, "{apart:e}");
 }
+
+/// A kinetic energy of all velocities of the affine maps of space is derived, though it is one long term.
+#[test]
+fn twelve_velocities() {
+    let generator = |at: usize| {
+        let row = |i: usize| (0..4).map(|j| if 4 * i + j == at { "1" } else { "0" }).collect::<Vec<_>>().join(", ");
+        format!("[[{}], [{}], [{}], [{}]]", row(0), row(1), row(2), row(3))
+    };
+    let generators = (0..12).map(generator).collect::<Vec<_>>().join(", ");
+    let text = format!(
+        "#[lagrangian(group = Affine, generators = [{generators}], velocity = xi, l = xi.dot(M * xi) / 2,
+            discretise = trapezoid(Cayley))]
+        struct Deforming {{ M: SMatrix<f64, 12, 12> }}"
+    );
+    let declaration = Declaration::parse(&text).expect("a declaration");
+    assert!(declaration.is_self_adjoint && declaration.is_quadratic);
+}
