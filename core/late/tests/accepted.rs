@@ -1,6 +1,6 @@
 //! Declarations that are right though they look strange: their steps by the macro and by programs, and their motions.
 
-use liestep::groups::R3;
+use liestep::groups::{LieGroup as _, R3, SE3};
 use liestep::mechanics::Effect as _;
 use liestep::motion::Propagator as _;
 use liestep::{SO3, Stepper, lagrangian};
@@ -204,4 +204,38 @@ fn twelve_velocities() {
     );
     let declaration = Declaration::parse(&text).expect("a declaration");
     assert!(declaration.is_self_adjoint && declaration.is_quadratic);
+}
+
+/// A rigid motion whose velocity has names for its parts, in a place that knows no vectors.
+mod rigid {
+    use liestep::groups::SE3;
+    use liestep::lagrangian;
+
+    #[lagrangian(
+        group = SE3,
+        velocity(Omega, v),
+        l = 0.5 * (2.0 * Omega.x * Omega.x + 3.0 * Omega.y * Omega.y + 4.0 * Omega.z * Omega.z) + 0.5 * m * v.norm_squared(),
+        discretise = trapezoid(Cayley),
+    )]
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub(crate) struct Rigid {
+        pub(crate) m: f64,
+    }
+}
+
+/// The momentum of a rigid motion is that of its parts, and the steps by programs are the same.
+#[test]
+fn parts_of_a_velocity() {
+    let stepper = Stepper::new(rigid::Rigid { m: 5.0 }, 0.01).expect("a stepper");
+    let velocity = Vector6::new(0.3, -0.2, 0.1, 1.0, 2.0, -1.0);
+    let mut state = stepper.start(SE3::identity(), velocity).expect("a start");
+    let expected = Vector6::new(0.6, -0.6, 0.4, 5.0, 10.0, -5.0);
+    assert!((state.momentum() - expected).norm() < 1e-14, "{:?}", state.momentum());
+    let declaration = Declaration::parse(rigid::Rigid::DECLARATION).expect("a declaration");
+    let whole: Whole = Whole::of(declaration, &[5.0], 0.01, "step".parse().expect("a method")).expect("a step");
+    let mut slice = whole.start(&homogeneous(Vector3::zeros()), velocity.as_slice()).expect("a start");
+    for step in 0..100 {
+        assert_eq!(stepper.step(&mut state), whole.step(&mut slice), "step {step}");
+        assert_eq!(state.momentum().as_slice(), &slice[whole.layout().momentum()], "step {step}");
+    }
 }

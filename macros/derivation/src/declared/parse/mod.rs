@@ -102,6 +102,10 @@ pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, 
     // An argument that seems to be missing may be one that couldn't be read.
     let is_readable = errors.is_empty();
     let (group_path, group, factors) = groups(&mut arguments, is_readable, errors);
+    if let [Factor { path: Some(_), .. }] = factors.as_slice() {
+        let (velocity, l, name) = (&mut arguments.velocity, &mut arguments.continuous, factors[0].group_name());
+        names::parts_of_velocity(velocity, &name, arguments.root.as_ref(), l);
+    }
     if arguments.expression.is_none() && arguments.continuous.is_none() && is_readable {
         errors.push(Span::call_site(), missing(role));
     }

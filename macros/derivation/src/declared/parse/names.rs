@@ -1,7 +1,9 @@
 //! The names of velocities and of displacements, one for each factor of the group.
 
-use syn::Ident;
+use proc_macro2::Literal;
+use quote::quote_spanned;
 use syn::ext::IdentExt as _;
+use syn::{Expr, Ident, Path};
 
 use super::check_free;
 use crate::declared::errors::Errors;
@@ -77,4 +79,34 @@ pub(super) fn velocities(named: Option<(Ident, Vec<Ident>)>, factors: &[Factor],
         errors.push_decisive(key.span(), message);
     }
     names
+}
+
+/// Names the parts of a rigid motion's velocity, `velocity(Omega, v)`: the two become one velocity, and the Lagrangian
+/// begins with a `let` for each part.
+pub(super) fn parts_of_velocity(
+    velocity: &mut Option<(Ident, Vec<Ident>)>,
+    group: &str,
+    root: Option<&Path>,
+    lagrangian: &mut Option<(Ident, Expr)>,
+) {
+    let (Some((_, names)), Some((_, expression)), "SE3") = (velocity.as_mut(), lagrangian.as_mut(), group) else {
+        return;
+    };
+    let [turn, shift] = names.as_slice() else { return };
+    let span = turn.span();
+    let whole = Ident::new(&format!("{}_{}", turn.unraw(), shift.unraw()), span);
+    let vector = match root {
+        Some(root) => quote_spanned!(span=> #root::__private::nalgebra::Vector3::new),
+        None => quote_spanned!(span=> ::liestep::__private::nalgebra::Vector3::new),
+    };
+    let entries = |first: usize| (first..first + 3).map(Literal::usize_unsuffixed);
+    let (of_turn, of_shift) = (entries(0), entries(3));
+    let parts = syn::parse2(quote_spanned! {span=> {
+        let #turn = #vector(#(#whole[#of_turn]),*);
+        let #shift = #vector(#(#whole[#of_shift]),*);
+        #expression
+    }});
+    if let Ok(parts) = parts {
+        (*expression, *names) = (parts, vec![whole]);
+    }
 }
