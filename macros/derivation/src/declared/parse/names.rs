@@ -95,10 +95,8 @@ pub(super) fn parts_of_velocity(
     let [turn, shift] = names.as_slice() else { return };
     let span = turn.span();
     let whole = Ident::new(&format!("{}_{}", turn.unraw(), shift.unraw()), span);
-    let vector = match root {
-        Some(root) => quote_spanned!(span=> #root::__private::nalgebra::Vector3::new),
-        None => quote_spanned!(span=> ::liestep::__private::nalgebra::Vector3::new),
-    };
+    let root = root.map_or_else(|| quote_spanned!(span=> ::liestep), |root| quote_spanned!(span=> #root));
+    let vector = quote_spanned!(span=> #root::__private::nalgebra::Vector3::new);
     let entries = |first: usize| (first..first + 3).map(Literal::usize_unsuffixed);
     let (of_turn, of_shift) = (entries(0), entries(3));
     let parts = syn::parse2(quote_spanned! {span=> {
