@@ -2,8 +2,10 @@
 
 use alloc::vec::Vec;
 
+use super::generators::Generators;
+use super::matrix_group::MatrixGroup;
 use super::{CayleyRetraction, ExponentialRetraction, LieGroup, Retraction, layout};
-use crate::numbers::{Blocks, Coordinates, Join, Mask, nowhere};
+use crate::numbers::{Blocks, Coordinates, Join, Mask, Real, nowhere};
 use nalgebra::SimdBool as _;
 
 /// The factor `K` of a product of groups, counted from zero.
@@ -32,6 +34,24 @@ pub trait Factor<const K: usize>: LieGroup {
 
     /// The factor's components of an element of the algebra, or of a covector.
     fn components(joined: &Self::Vector) -> <Self::Of as LieGroup>::Vector;
+}
+
+/// A group of matrices is the only factor of itself, so that a translation alone may see its own place.
+#[hot]
+impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Factor<0> for MatrixGroup<K, T, N, D> {
+    type Of = Self;
+
+    fn factor(&self) -> Self {
+        *self
+    }
+
+    fn of_matrix(matrix: &Self::Matrix) -> Self::Matrix {
+        *matrix
+    }
+
+    fn components(joined: &Self::Vector) -> Self::Vector {
+        *joined
+    }
 }
 
 /// The components of two groups, one after the other.

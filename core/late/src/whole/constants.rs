@@ -40,14 +40,21 @@ impl StepConstants {
         if h != 0.0 && !are_finite(&constants) && !are_finite(&folded(codes, numbers, 1.0)) {
             return Err(SetupError::NonFiniteConstant);
         }
-        let rest =
-            rare::<B>(&codes.code.rest, &constants, [(Array::Advected, &advected), (Array::Parameters, numbers)]);
+        let at_rest = |constants: &[f64]| {
+            rare::<B>(&codes.code.rest, constants, [(Array::Advected, &advected), (Array::Parameters, numbers)])
+        };
+        let rest = at_rest(&constants);
         let (trace, determinant) = (rest[0], codes.determinant(&rest[1..]));
+        // A force about a centre, or a pace, may have no value at the identity, where no body starts. Its steps are judged
+        // by the solve with care then.
+        if !trace.is_finite() && !at_rest(&folded(codes, numbers, 1.0))[0].is_finite() {
+            return Ok(Self { h, numbers: constants, safe: f64::INFINITY, largest_target: 0.0 });
+        }
         // An extreme `h` takes the momentum equation and its derivatives out of the range of numbers.
-        let at_rest = (0..codes.sizes.n).fold(determinant, |product, _| product / h);
+        let product = (0..codes.sizes.n).fold(determinant, |product, _| product / h);
         // An inertia that varies with the configuration may be singular here, but not at the start.
         let is_in_range = if is_constant && !codes.is_product() {
-            at_rest.is_finite() && at_rest != 0.0
+            product.is_finite() && product != 0.0
         } else {
             (trace / h).is_finite()
         };

@@ -58,6 +58,11 @@ impl<S: Effect> OwnStep<S> {
             return Err(SetupError::NonFiniteConstant);
         }
         let (at_rest, trace) = jacobian_at_rest(scene, &constants);
+        // A force about a centre, or a pace, may have no value at the identity, where no body starts. Its steps are judged
+        // by the solve with care then.
+        if !is_finite(trace) && !is_finite(jacobian_at_rest(scene, &scene.constants(real(1.0))).1) {
+            return Ok(Self { h, constants, largest_target: real(0.0), safe: real(f64::INFINITY) });
+        }
         let safe = safe(at_rest);
         // An extreme `h` takes the momentum equation and its derivatives out of this scalar's range.
         let at_rest = (0..<Group<S> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);

@@ -73,7 +73,7 @@ impl Code<'_> {
 
     /// The matrix of a factor among those of a product.
     pub(super) fn of_factor(&self, all: &TokenStream, factor: usize) -> TokenStream {
-        if !self.declaration.group.is_product() {
+        if self.declaration.group.factors().len() == 1 {
             return all.clone();
         }
         let factor = syn::Index::from(factor);

@@ -4,8 +4,8 @@
 //! order, or not at all. A macro of the group's name is found by the rules of names, and always expands to the same
 //! tokens.
 
-use proc_macro2::{Literal, Span, TokenStream};
-use quote::{format_ident, quote, quote_spanned};
+use proc_macro2::{Group, Literal, Span, TokenStream, TokenTree};
+use quote::{ToTokens as _, format_ident, quote, quote_spanned};
 use syn::{Ident, Path, Visibility};
 
 use crate::declared::Role;
@@ -28,6 +28,7 @@ pub(crate) fn own_group(group: Option<&OwnGroup>, name: Option<&Ident>, errors: 
     let core = quote_spanned!(span=> #private::core);
     let (marker, asked) = (format_ident!("{name}Generators"), format_ident!("__liestep_{name}"));
     let [size, dimension] = [*size, generators.elems.len()].map(Literal::usize_unsuffixed);
+    let generators = with_points(generators.to_token_stream());
     let about = format!("What declares [`{name}`].");
     // A `macro_rules!` macro can leave its crate by a path from the root only.
     let reach = match visibility {
@@ -61,6 +62,26 @@ pub(crate) fn own_group(group: Option<&OwnGroup>, name: Option<&Ident>, errors: 
         #[allow(unused_imports)]
         #reach use #asked as #name;
     }
+}
+
+/// Tokens whose whole numbers have a decimal point, as a constant of real numbers needs it.
+fn with_points(tokens: TokenStream) -> TokenStream {
+    let one = |token| match token {
+        TokenTree::Literal(number) => {
+            let whole: Option<syn::LitInt> = syn::parse_str(&number.to_string()).ok();
+            let point = whole.and_then(|whole| format!("{}.0", whole.base10_digits()).parse::<Literal>().ok());
+            let mut real = point.unwrap_or_else(|| number.clone());
+            real.set_span(number.span());
+            TokenTree::Literal(real)
+        }
+        TokenTree::Group(group) => {
+            let mut inside = Group::new(group.delimiter(), with_points(group.stream()));
+            inside.set_span(group.span());
+            TokenTree::Group(inside)
+        }
+        token => token,
+    };
+    tokens.into_iter().map(one).collect()
 }
 
 /// A macro for `group = Name!` after a mistake, so that it isn't one more: it leaves the struct unchanged.

@@ -119,7 +119,8 @@ fn increments(declaration: &Declaration, header: &Header, bound: &mut BoundNames
         let group = declaration.group.factor(index);
         let value = if declaration.group.is_product() {
             let index = syn::Index::from(index);
-            let matrix = quote_spanned!(span=> f.#index);
+            let is_alone = declaration.factors.len() == 1;
+            let matrix = if is_alone { quote_spanned!(span=> (*f)) } else { quote_spanned!(span=> f.#index) };
             if group.is_added { translation(header, &matrix, group.dimension()) } else { matrix }
         } else {
             quote_spanned!(span=> *f)

@@ -343,8 +343,9 @@ pub enum Refusal {
     TooMuchWork,
 }
 
-/// The limit on work for an answer within a second: four times the largest derivation of the repository.
-pub const MOST_WORK: u64 = 1_000_000;
+/// The limit on work, for an answer within some seconds: a kinetic energy of twelve velocities on the affine maps of space,
+/// by the Cayley map, takes three quarters of it.
+pub const MOST_WORK: u64 = 6_000_000;
 
 /// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]` and verifies the derivation, as the macro does, within a
 /// limit on work: products of terms, terms that become programs, and their operations. Returns also the work done.

@@ -24,7 +24,8 @@ fn a_type_its_generators_and_a_macro() {
 
 #[test]
 fn its_mistakes() {
-    for wrong in ["", "pub type A", "type A = [];", "type A = [[[1, 0.0], [0.0, 0.0]]];", "type A = [[[1.0, 0.0]]];"] {
+    for wrong in ["", "pub type A", "type A = [];", "type A = [[[1_u8, 0.0], [0.0, 0.0]]];", "type A = [[[1.0, 0.0]]];"]
+    {
         assert!(is_refused(&matrix_group(tokens(wrong))), "{wrong}");
     }
     // Five thousand signs and two hundred brackets are refused without a stack overflow.
@@ -39,6 +40,20 @@ fn its_mistakes() {
 fn entries_in_brackets() {
     let group = format!("type Affine = [[[(1.0), 0.0], [0.0, (-0.0)]], ([[0.0, 1.0], [0.0, 0.0]])]; {RELATION}");
     assert!(!is_refused(&matrix_group(tokens(&group))));
+}
+
+/// A whole number is the decimal number of the same value, in the constant and for a declaration.
+#[test]
+fn whole_entries() {
+    let items = |entries: &str| matrix_group(tokens(&format!("type Circle = {entries}; {RELATION}"))).to_string();
+    let group = items("[[[0, -1], [0x1, 0]]]");
+    assert_eq!(group, items("[[[0.0, -1.0], [1.0, 0.0]]]"));
+    assert!(group.contains("[[[0.0 , - 1.0] , [1.0 , 0.0]]]"), "{group}");
+    let body = |entries: &str| {
+        let l_d = "((F - I) * A * (F - I).transpose()).trace() / (2.0 * h)";
+        expanded(&format!("group = Own, generators = {entries}, l_d = {l_d}"), "struct Body { A: Matrix2<f64> }")
+    };
+    assert!(!is_refused(&body("[[[0, -1], [1, 0]]]")));
 }
 
 #[test]

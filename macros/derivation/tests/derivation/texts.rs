@@ -226,6 +226,11 @@ fn answer(question: &str, text: &str, declared: &Declared, others: &[(String, De
     let [arguments, item] = declared.text();
     match question {
         "outcome" => outcome(text, declared.expanded()),
+        "parts" => {
+            let text = declared.expanded().to_string();
+            let parts = text.split_once("Parts {").and_then(|(_, after)| after.split_once('}'));
+            parts.map_or("none", |(parts, _)| parts.trim()).to_owned()
+        }
         "derivation" => term("derivation", declared),
         "continuous derivation" => constant("CONTINUOUS_DERIVATION", &declared.file()).expect("a derivation"),
         "page" => page(&declared.file()),

@@ -78,6 +78,76 @@ fn are_relative_alike(a: &Tree, b: &Tree) -> bool {
     first.is_some() && first == second
 }
 
+/// A multiple of an attitude, or of a vector's image under its transpose.
+struct OfAttitude<'a> {
+    /// The body that the attitude is seen from; `None` for space.
+    from: Option<usize>,
+    is_transposed: bool,
+    vector: Option<&'a Tree>,
+}
+
+impl<'a> OfAttitude<'a> {
+    fn read(declaration: &Declaration, tree: &'a Tree) -> Option<Self> {
+        match &tree.kind {
+            Kind::Bound(_, a) | Kind::Negate(a) | Kind::Divide(a, _) => Self::read(declaration, a),
+            Kind::Multiply(a, b) if a.shape == Shape::Scalar => Self::read(declaration, b),
+            Kind::Multiply(a, b) if b.shape == Shape::Scalar => Self::read(declaration, a),
+            Kind::Multiply(a, b) => Self::read(declaration, a)
+                .filter(|attitude| attitude.vector.is_none())
+                .map(|attitude| Self { vector: Some(b), ..attitude }),
+            Kind::Transpose(a) => Self::read(declaration, a)
+                .filter(|attitude| attitude.vector.is_none())
+                .map(|attitude| Self { is_transposed: !attitude.is_transposed, ..attitude }),
+            Kind::Name(Name::Advected(index)) => {
+                let from = match declaration.advected.get(*index).filter(|w| !w.is_given)?.seen {
+                    View::Configuration(of) if !declaration.group.factor(of).is_added => None,
+                    View::Relative { of, from } if !declaration.group.factor(of).is_added => Some(from),
+                    _ => return None,
+                };
+                Some(Self { from, is_transposed: false, vector: None })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Whether both are attitudes that one body sees, or images of one vector under their transposes: a vector may be taken in
+/// the axes in the middle of two bodies, as in the strain of a rod, `((R_1 + R_2).transpose() * r) / 2.0`.
+fn are_attitudes_alike(declaration: &Declaration, a: &Tree, b: &Tree) -> bool {
+    let (Some(a), Some(b)) = (OfAttitude::read(declaration, a), OfAttitude::read(declaration, b)) else { return false };
+    let is_one = match (a.vector, b.vector) {
+        (None, None) => true,
+        (Some(a), Some(b)) => are_same(a, b),
+        _ => false,
+    };
+    is_one && a.from == b.from && a.is_transposed == b.is_transposed
+}
+
+/// The depth to which expressions are compared.
+const DEEPEST: usize = 6;
+
+/// Whether two short expressions are the same operations on the same names.
+fn are_same(a: &Tree, b: &Tree) -> bool {
+    let is_same = match (&a.kind, &b.kind) {
+        (Kind::Number(a), Kind::Number(b)) => a == b,
+        (Kind::Name(a), Kind::Name(b)) => a == b,
+        (Kind::Bound(_, a), _) => return are_same(a, b),
+        (_, Kind::Bound(_, b)) => return are_same(a, b),
+        (Kind::Power(_, a), Kind::Power(_, b)) => a == b,
+        (Kind::Apply(a, _), Kind::Apply(b, _)) => a == b,
+        (Kind::Entry(_, a, c), Kind::Entry(_, b, d)) => (a, c) == (b, d),
+        (a, b) => std::mem::discriminant(a) == std::mem::discriminant(b),
+    };
+    let operands = || a.kind.operands().into_iter().zip(b.kind.operands());
+    is_same
+        && a.shape == b.shape
+        && a.depth.max(b.depth) <= DEEPEST
+        && operands().all(|pair| match pair {
+            (Some(a), Some(b)) => are_same(a, b),
+            (a, b) => a.is_none() && b.is_none(),
+        })
+}
+
 impl Checker<'_> {
     /// Whether the columns of the left factor of a product have the frame of the rows of the right one.
     pub(super) fn meet(&mut self, whole: &Expr, (left, right): (&Expr, &Expr), trees: (&Tree, &Tree)) -> bool {
@@ -133,7 +203,10 @@ impl Checker<'_> {
             self.errors.push_over(whole, message);
             return false;
         }
-        if (a.is_of_turns && b.is_of_turns) || (matches!(how, How::Sum(_)) && stays(a) && stays(b)) {
+        let is_sum = matches!(how, How::Sum(_));
+        if (a.is_of_turns && b.is_of_turns)
+            || is_sum && (stays(a) && stays(b) || are_attitudes_alike(self.declaration, a, b))
+        {
             return true;
         }
         for side in [0, 1] {

@@ -14,7 +14,45 @@ use crate::mathematics::symbolic::{Function, Rational};
 
 pub(super) const FUNCTIONS: [&str; 5] = ["hat", "vee", "log", "exp", "inverse"];
 
+/// The rows of `Vector2::new` and `Vector3::new`, by any path.
+fn rows_of_new(function: &Expr) -> Option<usize> {
+    let Expr::Path(path) = function else { return None };
+    let mut names = path.path.segments.iter().rev().map(|segment| segment.ident.to_string());
+    match (names.next()?.as_str(), names.next()?.as_str()) {
+        ("new", "Vector2") => Some(2),
+        ("new", "Vector3") => Some(3),
+        _ => None,
+    }
+}
+
 impl Checker<'_> {
+    /// `Vector3::new(x, y, z)`, as `x e_1 + y e_2 + z e_3`.
+    fn column(&mut self, call: &ExprCall, rows: usize) -> Option<Rc<Tree>> {
+        let (span, shape) = (call.span(), Shape::Matrix(rows, 1));
+        if call.args.len() != rows {
+            self.errors.push_over(call, format!("a vector of {rows} has {rows} entries"));
+            return None;
+        }
+        let entries: Vec<Option<Rc<Tree>>> = call.args.iter().map(|entry| self.expression(entry)).collect();
+        let mut sum: Option<Rc<Tree>> = None;
+        for ((k, entry), written) in entries.into_iter().enumerate().zip(&call.args) {
+            let entry = entry?;
+            if entry.shape != Shape::Scalar {
+                self.errors.push_over(
+                    written,
+                    format!("an entry of a vector is a scalar, and this is {}", entry.shape.describe()),
+                );
+                return None;
+            }
+            let along = Tree::new(span, shape, Kind::Components(entry, [(k, 0, 0, Rational::ONE)].into()));
+            sum = Some(match sum {
+                Some(sum) => Tree::new(span, shape, Kind::Add(sum, along)),
+                None => along,
+            });
+        }
+        sum
+    }
+
     pub(super) fn call(&mut self, call: &ExprCall) -> Option<Rc<Tree>> {
         match self.callee(call) {
             Callee::Closure(name, closure) => return self.called(&name, &closure, call),
@@ -25,6 +63,9 @@ impl Checker<'_> {
             Expr::Path(path) => path.path.get_ident().map(ToString::to_string).unwrap_or_default(),
             _ => String::new(),
         };
+        if let Some(rows) = rows_of_new(&call.func) {
+            return self.column(call, rows);
+        }
         if !FUNCTIONS.contains(&function.as_str()) {
             let advice = self.advice_on_function(&call.func);
             self.errors.push_over(&call.func, advice);

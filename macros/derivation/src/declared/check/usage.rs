@@ -23,7 +23,10 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
         let unused = |(factor, _): &(usize, &Ident)| !used.contains(&Name::Velocity(*factor));
         let unused: Vec<&Ident> =
             declaration.velocities().iter().enumerate().filter(unused).map(|(_, name)| name).collect();
-        if !unused.is_empty() {
+        // A potential alone is a term to be added to others, whose velocity may have its name here.
+        let is_potential =
+            unused.len() == declaration.velocities().len() && used.iter().any(|name| matches!(name, Name::Advected(_)));
+        if !unused.is_empty() && !is_potential {
             for velocity in unused {
                 let message = if declaration.group.is_product() {
                     forgotten(&velocity.to_string())
@@ -32,7 +35,7 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
                 };
                 errors.push(velocity.span(), message);
             }
-        } else if !used.iter().any(|name| matches!(name, Name::Velocity(_) | Name::Advected(_))) {
+        } else if !is_potential && !used.iter().any(|name| matches!(name, Name::Velocity(_) | Name::Advected(_))) {
             errors.push_over(
                 declaration.expression.as_ref().map(super::value),
                 "the Lagrangian depends on no velocity, which `velocity = Omega` names, and on nothing advected: nothing \

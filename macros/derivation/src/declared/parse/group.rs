@@ -28,6 +28,11 @@ impl GroupName {
         if self.is_own { None } else { built_in(&self.name()) }
     }
 
+    /// Whether the group is one of translations.
+    pub(super) fn is_translation(&self) -> bool {
+        self.built_in().is_some_and(|group| !group.is_so3) && IN_PRODUCTS.contains(&self.name().as_str())
+    }
+
     /// Whether the name may be an increment in the place of its group.
     pub(super) fn may_be_an_increment(&self) -> bool {
         let is_misspelled = !suggestion(&self.name(), NAMES).is_empty();
@@ -131,7 +136,7 @@ pub(super) fn product(named: Vec<(Ident, GroupName)>, errors: &mut Errors) -> (V
         }
         let known = match named.built_in() {
             Some(group) if group.is_so3 => Some(group),
-            Some(group) if IN_PRODUCTS.contains(&named.name().as_str()) => Some(group.added()),
+            Some(group) if named.is_translation() => Some(group.added()),
             _ => None,
         };
         if known.is_none() {
@@ -274,11 +279,12 @@ fn explained(defect: Defect, array: &ExprArray) -> syn::Error {
 const MOST_ROWS: usize = 8;
 
 fn decimal(expression: &Expr) -> syn::Result<Rational> {
-    let message = "write the entry of a generator as a decimal number: `-1.0`";
+    let message = "write the entry of a generator as a number: `-1.0`";
     let value = match plain(expression) {
         Expr::Unary(unary) if matches!(unary.op, syn::UnOp::Neg(_)) => -decimal(&unary.expr)?,
         Expr::Lit(literal) => match &literal.lit {
             syn::Lit::Float(float) => Rational::from_decimal(float.base10_digits()),
+            syn::Lit::Int(whole) if whole.suffix().is_empty() => Rational::from_decimal(whole.base10_digits()),
             _ => return Err(syn::Error::new_spanned(expression, message)),
         },
         _ => return Err(syn::Error::new_spanned(expression, message)),

@@ -102,6 +102,10 @@ pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, 
     // An argument that seems to be missing may be one that couldn't be read.
     let is_readable = errors.is_empty();
     let (group_path, group, factors) = groups(&mut arguments, is_readable, errors);
+    if let [Factor { path: Some(_), .. }] = factors.as_slice() {
+        let (velocity, l, name) = (&mut arguments.velocity, &mut arguments.continuous, factors[0].group_name());
+        names::parts_of_velocity(velocity, &name, arguments.root.as_ref(), l);
+    }
     if arguments.expression.is_none() && arguments.continuous.is_none() && is_readable {
         errors.push(Span::call_site(), missing(role));
     }
@@ -133,7 +137,9 @@ pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, 
         errors,
     );
     let displacements = match role {
-        Role::Force if errors.is_empty() => displacements(arguments.displacement.take(), &factors, errors),
+        Role::Force if errors.is_empty() => {
+            displacements(arguments.displacement.take(), (&factors, group.is_product()), errors)
+        }
         _ => Vec::new(),
     };
     // A repeated name is reported once, and not a second time for the end of the step.
@@ -187,7 +193,8 @@ fn read_arguments(role: Role, arguments: TokenStream, errors: &mut Errors) -> Ar
 /// The path of the group, if known, the group, and its factors.
 fn groups(arguments: &mut Arguments, is_readable: bool, errors: &mut Errors) -> (Option<Path>, Group, Vec<Factor>) {
     let named = std::mem::take(&mut arguments.factors);
-    if named.len() > 1 {
+    // A translation that is named is a vector, alone as beside others.
+    if named.len() > 1 || named.iter().any(|(_, group)| group.is_translation()) {
         if let Some((key, _)) = &arguments.generators {
             errors.push(key.span(), "`generators` belong to `group = Name`: remove them");
         }
@@ -408,7 +415,7 @@ fn seen<'a>(
     let factors = group.map_or(&[][..], |(_, factors)| factors);
     let place = |name: &Ident| factors.iter().position(|factor| name.unraw() == factor.name);
     match source {
-        Source::Field(field) if factors.len() > 1 && !is_given => {
+        Source::Field(field) if group.is_some_and(|(group, _)| group.is_product()) && !is_given => {
             errors.push_decisive(field.span(), seers((name, field), group.map(|(group, _)| group), factors));
             None
         }

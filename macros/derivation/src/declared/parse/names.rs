@@ -1,7 +1,9 @@
 //! The names of velocities and of displacements, one for each factor of the group.
 
-use syn::Ident;
+use proc_macro2::Literal;
+use quote::quote_spanned;
 use syn::ext::IdentExt as _;
+use syn::{Expr, Ident, Path};
 
 use super::check_free;
 use crate::declared::errors::Errors;
@@ -29,8 +31,11 @@ pub(super) fn check_names(
 }
 
 /// The names of a force's displacements on several bodies; empty for one body, where they are `eta` and `eta_next`.
-pub(super) fn displacements(named: Option<(Ident, Vec<Ident>)>, factors: &[Factor], errors: &mut Errors) -> Vec<Ident> {
-    let is_product = factors.len() > 1;
+pub(super) fn displacements(
+    named: Option<(Ident, Vec<Ident>)>,
+    (factors, is_product): (&[Factor], bool),
+    errors: &mut Errors,
+) -> Vec<Ident> {
     let Some((key, names)) = named else {
         if let Some(factor) = factors.first().filter(|_| is_product) {
             let message = format!(
@@ -74,4 +79,32 @@ pub(super) fn velocities(named: Option<(Ident, Vec<Ident>)>, factors: &[Factor],
         errors.push_decisive(key.span(), message);
     }
     names
+}
+
+/// Names the parts of a rigid motion's velocity, `velocity(Omega, v)`: the two become one velocity, and the Lagrangian
+/// begins with a `let` for each part.
+pub(super) fn parts_of_velocity(
+    velocity: &mut Option<(Ident, Vec<Ident>)>,
+    group: &str,
+    root: Option<&Path>,
+    lagrangian: &mut Option<(Ident, Expr)>,
+) {
+    let (Some((_, names)), Some((_, expression)), "SE3") = (velocity.as_mut(), lagrangian.as_mut(), group) else {
+        return;
+    };
+    let [turn, shift] = names.as_slice() else { return };
+    let span = turn.span();
+    let whole = Ident::new(&format!("{}_{}", turn.unraw(), shift.unraw()), span);
+    let root = root.map_or_else(|| quote_spanned!(span=> ::liestep), |root| quote_spanned!(span=> #root));
+    let vector = quote_spanned!(span=> #root::__private::nalgebra::Vector3::new);
+    let entries = |first: usize| (first..first + 3).map(Literal::usize_unsuffixed);
+    let (of_turn, of_shift) = (entries(0), entries(3));
+    let parts = syn::parse2(quote_spanned! {span=> {
+        let #turn = #vector(#(#whole[#of_turn]),*);
+        let #shift = #vector(#(#whole[#of_shift]),*);
+        #expression
+    }});
+    if let Ok(parts) = parts {
+        (*expression, *names) = (parts, vec![whole]);
+    }
 }

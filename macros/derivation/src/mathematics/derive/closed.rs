@@ -13,7 +13,7 @@
 
 use super::Context;
 use super::transport::in_small_increment;
-use crate::mathematics::symbolic::{Expression, Structure, SymbolId, Symbols, Variations, stage_of, variation};
+use crate::mathematics::symbolic::{Expression, Stage, Structure, SymbolId, Symbols, Variations, stage_of, variation};
 
 /// A `let` that isn't multiplied out.
 #[derive(Clone, Debug)]
@@ -49,8 +49,10 @@ pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols)
             let symbol = symbols.get(*symbol);
             (symbol.name.clone(), symbol.shape, symbol.stage)
         };
+        // A direction is no value of a step: a multiplier is known as early as what it is multiplied with.
+        let direction = symbols.add(format!("δ{name}"), shape, Structure::General, Stage::Construction);
         let mut add = |prefix: &str| symbols.add(format!("{prefix}{name}"), shape, Structure::General, stage);
-        let (direction, multiplier) = (add("δ"), add("λ_"));
+        let multiplier = add("λ_");
         let (tangent, multiplier_tangent) = (add("∂"), add("∂λ_"));
         let zero = || Expression::zero((1, 1));
         closed.push(ClosedLet {

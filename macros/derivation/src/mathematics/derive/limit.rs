@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use super::series::{Expansion, LimitError};
+use super::series::{LimitError, of_lagrangian};
 use super::{Context, Continuous, Inverse, OfFactor, momentum_equation};
 use crate::mathematics::symbolic::{
     Expression, Monomial, Rational, SymbolId, Variations, monomial_contains, substitute, variation,
@@ -69,7 +69,7 @@ fn by_powers(context: &Context, momentum: &Expression) -> Option<Limit> {
 /// The limit by a series in `h` along `F = exp(hξ̂)`: its coefficient of `h` is `l(ξ, w)`, of any degree in `ξ`.
 fn along_motion(context: &Context) -> Result<Limit, LimitError> {
     let factors = &context.directions.factors;
-    let series = Expansion::new(context, context.directions.scratch)?.of_lagrangian()?;
+    let series = of_lagrangian(context, context.directions.scratch)?;
     let advected = |value: &Expression| context.declared.advected.iter().any(|w| value.contains(w.symbol));
     let moves = |value: &Expression| factors.iter().any(|one| value.contains(one.velocity));
     if let Some((order, _)) = series.terms().find(|(order, value)| *order < 0 && moves(value)) {

@@ -21,9 +21,10 @@ pub enum LimitError {
     TooLarge,
 }
 
-/// The order from which on terms are dropped, except the first of a series. The limit needs `l_d` to the first order,
-/// and `l_d` may divide by `h`.
-const CUTOFF: i32 = 3;
+/// The orders from which on terms are dropped, except the first of a series; the later ones are tried where `l_d` isn't
+/// known to the first order by those before. A square of a kinetic part that is multiplied out divides by `h³`, and a cube
+/// by `h⁵`, in terms that aren't small one by one.
+const CUTOFFS: [i32; 3] = [3, 5, 7];
 /// The `end` of an exact series.
 const NEVER: i32 = 1_000;
 /// The limit on factors: a limit that a person would write down has a hundredth of it, that of a Cayley transform a
@@ -37,19 +38,11 @@ pub(super) struct Series {
     coefficients: BTreeMap<i32, Expression>,
     /// The order `e` of the remainder.
     end: i32,
+    /// The order from which on terms are dropped.
+    cutoff: i32,
 }
 
 impl Series {
-    fn constant(value: Expression) -> Self {
-        let shape = value.shape();
-        let coefficients = if value.is_zero() { BTreeMap::new() } else { BTreeMap::from([(0, value)]) };
-        Self { shape, coefficients, end: NEVER }
-    }
-
-    fn one() -> Self {
-        Self::constant(Expression::identity(1))
-    }
-
     /// The coefficient of this order in a scalar series.
     pub(super) fn at(&self, order: i32) -> Expression {
         self.coefficients.get(&order).cloned().unwrap_or_else(|| Expression::zero((1, 1)))
@@ -68,8 +61,9 @@ impl Series {
         self.coefficients.retain(|_, coefficient| !coefficient.is_zero());
         self.end = self.end.min(end).min(NEVER);
         let (lowest, highest) = (self.lowest(), self.coefficients.keys().next_back().copied());
-        if lowest < self.end && !(self.is_exact() && highest < Some(most(lowest))) {
-            self.end = self.end.min(most(lowest));
+        let most = most(self.cutoff, lowest);
+        if lowest < self.end && !(self.is_exact() && highest < Some(most)) {
+            self.end = self.end.min(most);
         }
         self.coefficients.retain(|&order, _| order < self.end);
         self
@@ -94,37 +88,51 @@ impl Series {
 
     fn mapped(self, operation: impl Fn(&Expression) -> Expression, shape: (usize, usize)) -> Self {
         let coefficients = self.coefficients.iter().map(|(&order, value)| (order, operation(value))).collect();
-        Self { shape, coefficients, end: self.end }.cut(NEVER)
+        Self { shape, coefficients, ..self }.cut(NEVER)
     }
 
     /// The series times `hⁿ`.
     fn shifted(self, n: i32) -> Self {
         let coefficients = self.coefficients.into_iter().map(|(order, value)| (order + n, value)).collect();
-        Self { shape: self.shape, coefficients, end: self.end + n }.cut(NEVER)
+        Self { coefficients, end: self.end + n, ..self }.cut(NEVER)
     }
 }
 
 /// The order at which a series is cut.
-fn most(lowest: i32) -> i32 {
-    CUTOFF.max(lowest + 1)
+fn most(cutoff: i32, lowest: i32) -> i32 {
+    cutoff.max(lowest + 1)
+}
+
+/// The series of `l_d`, known at least to the first order in `h`.
+pub(super) fn of_lagrangian(context: &Context, scratch: SymbolId) -> Result<Series, LimitError> {
+    let mut found = Err(LimitError::NotALagrangian);
+    for cutoff in CUTOFFS {
+        found = Expansion::new(context, scratch, cutoff).and_then(|expansion| expansion.of_lagrangian());
+        // Another error doesn't depend on what was dropped.
+        if !matches!(found, Err(LimitError::NotALagrangian)) {
+            break;
+        }
+    }
+    found
 }
 
 /// Evaluates expressions to series.
-pub(super) struct Expansion<'a> {
+struct Expansion<'a> {
     context: &'a Context<'a>,
     /// A scalar variable for derivatives of functions.
     scratch: SymbolId,
+    cutoff: i32,
     known: BTreeMap<SymbolId, Series>,
     /// Whether a coefficient exceeded the limit on factors.
     is_too_large: Cell<bool>,
 }
 
 impl<'a> Expansion<'a> {
-    pub(super) fn new(context: &'a Context, scratch: SymbolId) -> Result<Self, LimitError> {
-        let mut expansion = Self { context, scratch, known: BTreeMap::new(), is_too_large: Cell::new(false) };
+    fn new(context: &'a Context, scratch: SymbolId, cutoff: i32) -> Result<Self, LimitError> {
+        let mut expansion = Self { context, scratch, cutoff, known: BTreeMap::new(), is_too_large: Cell::new(false) };
         for (factor, one) in context.directions.factors.iter().enumerate() {
             if context.is_added(factor) {
-                let velocity = Series::constant(context.symbol(one.velocity)).shifted(1);
+                let velocity = expansion.constant(context.symbol(one.velocity)).shifted(1);
                 expansion.known.insert(one.increment, velocity);
                 continue;
             }
@@ -133,7 +141,7 @@ impl<'a> Expansion<'a> {
             expansion.known.insert(one.increment, increment);
             expansion.known.insert(one.inverse, inverse);
         }
-        let h = Series::constant(Expression::identity(1)).shifted(1);
+        let h = expansion.one().shifted(1);
         expansion.known.insert(context.declared.step, h);
         for one in &context.declared.lets {
             let value = expansion.of(&one.value)?;
@@ -142,21 +150,30 @@ impl<'a> Expansion<'a> {
         Ok(expansion)
     }
 
+    fn constant(&self, value: Expression) -> Series {
+        let shape = value.shape();
+        let coefficients = if value.is_zero() { BTreeMap::new() } else { BTreeMap::from([(0, value)]) };
+        Series { shape, coefficients, end: NEVER, cutoff: self.cutoff }
+    }
+
+    fn one(&self) -> Series {
+        self.constant(Expression::identity(1))
+    }
+
     /// `I ± h ξ̂ + h² ξ̂²/2 ± …`.
     fn exponential(&self, velocity: SymbolId, sign: Rational) -> Series {
         let xi = self.context.symbol(velocity).scaled(sign);
         let identity = Expression::identity(xi.shape().0);
-        let mut series = Series::constant(identity.clone());
+        let mut series = self.constant(identity.clone());
         let mut power = identity;
-        for order in 1..CUTOFF {
+        for order in 1..self.cutoff {
             power = self.context.product(&power, &xi).scaled(Rational::new(1, order.into()));
             series.coefficients.insert(order, power.clone());
         }
-        series.cut(CUTOFF)
+        series.cut(self.cutoff)
     }
 
-    /// The series of `l_d`, known at least to the first order in `h`.
-    pub(super) fn of_lagrangian(&self) -> Result<Series, LimitError> {
+    fn of_lagrangian(&self) -> Result<Series, LimitError> {
         let found = self.of(&self.context.declared.expression);
         match found {
             Ok(series) if series.end >= 2 => Ok(series),
@@ -166,15 +183,15 @@ impl<'a> Expansion<'a> {
     }
 
     fn of(&self, expression: &Expression) -> Result<Series, LimitError> {
-        let mut sum = Series::constant(Expression::zero(expression.shape()));
+        let mut sum = self.constant(Expression::zero(expression.shape()));
         for (monomial, coefficient) in expression.terms() {
-            let mut product = Series::constant(Expression::rational(coefficient));
+            let mut product = self.constant(Expression::rational(coefficient));
             for (atom, exponent) in &monomial.scalars {
                 product = self.times(&product, &self.power(self.atom(atom)?, *exponent)?)?;
             }
             let word = match self.word(&monomial.word)? {
                 Some(word) => word,
-                None => Series::constant(Expression::identity(expression.shape().0)),
+                None => self.constant(Expression::identity(expression.shape().0)),
             };
             sum = sum.plus(self.times(&product, &word)?);
         }
@@ -186,7 +203,7 @@ impl<'a> Expansion<'a> {
         match atom {
             Atom::Symbol(id) => Ok(self.symbol(*id)),
             Atom::Trace(word) => {
-                let product = self.word(word)?.unwrap_or_else(Series::one);
+                let product = self.word(word)?.unwrap_or_else(|| self.one());
                 Ok(product.mapped(|value| value.trace(symbols), (1, 1)))
             }
             Atom::Function(function, inner) => self.function(*function, self.of(inner)?),
@@ -195,7 +212,7 @@ impl<'a> Expansion<'a> {
     }
 
     fn symbol(&self, id: SymbolId) -> Series {
-        self.known.get(&id).cloned().unwrap_or_else(|| Series::constant(self.context.symbol(id)))
+        self.known.get(&id).cloned().unwrap_or_else(|| self.constant(self.context.symbol(id)))
     }
 
     fn word(&self, word: &[Factor]) -> Result<Option<Series>, LimitError> {
@@ -216,7 +233,7 @@ impl<'a> Expansion<'a> {
             let (rows, columns) = series.shape;
             if transposed { series.mapped(|value| value.transpose(symbols), (columns, rows)) } else { series }
         };
-        let inner = |word: &[Factor]| Ok(self.word(word)?.unwrap_or_else(Series::one));
+        let inner = |word: &[Factor]| Ok(self.word(word)?.unwrap_or_else(|| self.one()));
         Ok(match factor {
             Factor::Symbol { id, transposed } => turned(self.symbol(*id), *transposed),
             Factor::Inverse { id, transposed } if symbols.inverse_of(*id).is_some() => {
@@ -229,7 +246,7 @@ impl<'a> Expansion<'a> {
                     crate::mathematics::symbolic::Monomial { word: vec![factor.clone()], ..Default::default() },
                     Rational::ONE,
                 );
-                Series::constant(value)
+                self.constant(value)
             }
             Factor::Hat(word) => inner(word)?.mapped(|value| value.hat(symbols), (3, 3)),
             Factor::Diagonal(word) => inner(word)?.mapped(|value| value.diagonal(symbols), factor.shape(symbols)),
@@ -249,7 +266,7 @@ impl<'a> Expansion<'a> {
             return Err(LimitError::TooSingular(lowest));
         }
         let end = (a.end + b.lowest()).min(b.end + a.lowest());
-        let mut end = if a.is_exact() && b.is_exact() { end } else { end.min(most(lowest)) };
+        let mut end = if a.is_exact() && b.is_exact() { end } else { end.min(most(self.cutoff, lowest)) };
         let mut coefficients: BTreeMap<i32, Expression> = BTreeMap::new();
         for (i, x) in a.terms() {
             for (j, y) in b.terms() {
@@ -269,12 +286,12 @@ impl<'a> Expansion<'a> {
                 coefficients.insert(i + j, sum);
             }
         }
-        Ok(Series { shape, coefficients, end }.cut(NEVER))
+        Ok(Series { shape, coefficients, end, cutoff: self.cutoff }.cut(NEVER))
     }
 
     fn power(&self, base: Series, exponent: i32) -> Result<Series, LimitError> {
         let mut square = if exponent < 0 { self.reciprocal(&base)? } else { base };
-        let (mut product, mut left) = (Series::one(), exponent.unsigned_abs());
+        let (mut product, mut left) = (self.one(), exponent.unsigned_abs());
         while left > 0 {
             if left % 2 == 1 {
                 product = self.times(&product, &square)?;
@@ -290,16 +307,16 @@ impl<'a> Expansion<'a> {
     /// `1/(c hˡ (1 + ε)) = c⁻¹ h⁻ˡ Σ (−ε)ᵐ`.
     fn reciprocal(&self, series: &Series) -> Result<Series, LimitError> {
         let (order, leading) = series.terms().next().ok_or(LimitError::NotALagrangian)?;
-        let inverse = Series::constant(leading.clone().power(-1, self.context.symbols)).shifted(-order);
+        let inverse = self.constant(leading.clone().power(-1, self.context.symbols)).shifted(-order);
         let mut epsilon = self.times(series, &inverse)?;
         epsilon.coefficients.remove(&0);
         let minus = epsilon.mapped(|value| value.clone().scaled(-Rational::ONE), (1, 1));
-        let (mut sum, mut power) = (Series::one(), Series::one());
-        for _ in 0..CUTOFF {
+        let (mut sum, mut power) = (self.one(), self.one());
+        for _ in 0..self.cutoff {
             power = self.times(&power, &minus)?;
             sum = sum.plus(power.clone());
         }
-        self.times(&inverse, &sum.cut((CUTOFF + 1) * minus.lowest()))
+        self.times(&inverse, &sum.cut((self.cutoff + 1) * minus.lowest()))
     }
 
     /// Taylor's series about the value at `h = 0`; for a root, the even leading power of `h` is taken out first.
@@ -318,15 +335,15 @@ impl<'a> Expansion<'a> {
         let along = Variations::from([(self.scratch, Expression::identity(1))]);
         let map = BTreeMap::from([(self.scratch, at)]);
         let mut derivative = Expression::function(function, self.context.symbol(self.scratch));
-        let (mut sum, mut power) = (Series::constant(Expression::zero((1, 1))), Series::one());
-        for order in 1..=CUTOFF {
-            let value = Series::constant(substitute(&derivative, &map, symbols));
+        let (mut sum, mut power) = (self.constant(Expression::zero((1, 1))), self.one());
+        for order in 1..=self.cutoff {
+            let value = self.constant(substitute(&derivative, &map, symbols));
             sum = sum.plus(self.times(&value, &power)?);
             derivative = variation(&derivative, &along, symbols);
             power = self
                 .times(&power, &change)?
                 .mapped(|value| value.clone().scaled(Rational::new(1, order.into())), (1, 1));
         }
-        Ok(sum.cut(CUTOFF * change.lowest()))
+        Ok(sum.cut(self.cutoff * change.lowest()))
     }
 }
