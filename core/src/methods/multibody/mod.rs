@@ -18,16 +18,20 @@
 //! in the multipliers, so they need no initial guess from the last step.
 
 mod constraint;
+mod couplings;
 mod elimination;
 mod equations;
 mod functions;
 mod graph;
 mod newton;
+mod nodes;
+mod part;
 mod propagator;
 mod start;
 mod state;
 mod step;
 mod stepper;
+mod sums;
 mod system;
 mod terms;
 #[cfg(test)]
@@ -35,6 +39,7 @@ mod tests;
 mod workspace;
 
 pub use constraint::{BallJoint, Constraint, PinJoint, Place, Slope};
+pub use part::BodyPart;
 pub use stepper::MultibodyStepper;
 pub use system::Multibody;
 

@@ -68,10 +68,7 @@ impl<'a> Problem<'a> {
     /// One Newton iteration.
     fn newton(&mut self, longest: f64) -> Update {
         let (stepper, work) = (self.stepper, &mut *self.work);
-        for body in 0..stepper.bodies() {
-            let (residual, matrix) = stepper.newton_system(body, &work.now[body], &work.a[body], &work.half[body]);
-            (work.residuals[body], work.matrices[body]) = (residual, matrix);
-        }
+        stepper.set_newton(&work.now, &work.a, &work.half, &mut work.coefficients);
         self.set_next();
         let (stepper, work) = (self.stepper, &mut *self.work);
         // Gaps are halved: the unknowns are half the coordinates, so a shift is twice its unknown.
@@ -80,7 +77,7 @@ impl<'a> Problem<'a> {
             *turn = work.places[k].attitude * tangent * 0.5;
         }
         work.equations.set_after(stepper.joints(), &stepper.tree, &work.next_places, &work.turns);
-        work.equations.factorise(&stepper.tree, &work.matrices);
+        work.equations.factorise(&stepper.tree, &work.coefficients);
         self.met = work.equations.redundant(&stepper.tree);
         self.update(longest)
     }
@@ -88,9 +85,7 @@ impl<'a> Problem<'a> {
     /// One simplified iteration, with the last Jacobian.
     fn simplified(&mut self) -> Update {
         let (stepper, work) = (self.stepper, &mut *self.work);
-        for body in 0..stepper.bodies() {
-            work.residuals[body] = stepper.newton_residual(body, &work.now[body], &work.a[body], &work.half[body]);
-        }
+        stepper.set_residuals(&work.now, &work.a, &work.half, &mut work.coefficients.vectors);
         self.set_next();
         self.update(f64::INFINITY)
     }
@@ -98,9 +93,10 @@ impl<'a> Problem<'a> {
     /// Solves for the update and applies it. If a body would turn by more than `longest`, all updates are scaled down.
     fn update(&mut self, longest: f64) -> Update {
         let (stepper, weights) = (self.stepper, self.weights());
-        let Workspace { equations, residuals, next_places, half, .. } = &mut *self.work;
+        let Workspace { equations, coefficients, next_places, half, .. } = &mut *self.work;
         let joints = stepper.joints();
-        let opposed = equations.solve(&stepper.tree, residuals, |joint| gap(&joints[joint], next_places) * 0.5);
+        let opposed =
+            equations.solve(&stepper.tree, &coefficients.vectors, |joint| gap(&joints[joint], next_places) * 0.5);
         let (mut update, mut largest, mut size) = (0.0, 0.0_f64, 0.0);
         for part in &equations.unknowns.bodies {
             update += squares(part).dot(&weights);

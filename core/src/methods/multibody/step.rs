@@ -3,6 +3,7 @@
 use nalgebra::Vector6;
 
 use super::constraint::Place;
+use super::couplings::Coefficients;
 use super::equations::Equations;
 use super::newton::Problem;
 use super::state::body_at;
@@ -31,7 +32,7 @@ impl MultibodyStepper {
             offsets.set_steps(state, steps + 1.0);
             return Ok(StepReport::of(0));
         }
-        work.fit(self.bodies());
+        work.fit(self.bodies(), self.tree.couplings.len());
         work.equations.fit(self.joints(), &self.tree);
         self.load(state, work, steps)?;
         self.kick_before(work);
@@ -130,12 +131,12 @@ impl MultibodyStepper {
     /// Projects the momenta after the changes in `a` onto those whose velocities satisfy the constraints at the next
     /// configuration. If the impulses aren't unique, the joint that is redundant, and its pivot.
     fn project(&self, work: &mut Workspace) -> Result<(), (usize, f64)> {
-        let Workspace { next, next_places, momenta, a, residuals, matrices, reactions, equations, .. } = work;
+        let Workspace { next, next_places, momenta, a, coefficients, reactions, equations, changed, .. } = work;
         for body in 0..self.bodies() {
             next_places[body] = place(&next[body]);
-            residuals[body] = momenta[body] + a[body];
+            changed[body] = momenta[body] + a[body];
         }
-        self.set_impulses(equations, next, next_places, (residuals, matrices))?;
+        self.set_impulses(equations, next, next_places, (changed, coefficients))?;
         equations.reactions(&self.tree, reactions);
         for body in 0..self.bodies() {
             a[body] -= reactions[body];
@@ -145,24 +146,23 @@ impl MultibodyStepper {
     }
 
     /// Solves for the impulses of the joints that project these momenta onto those whose velocities satisfy the
-    /// constraints, at the least distance in the metric of the inertia; the momenta are overwritten by residuals.
+    /// constraints, at the least distance in the metric of the inertia.
     pub(super) fn set_impulses(
         &self,
         equations: &mut Equations,
         bodies: &[Body],
         places: &[Place],
-        (momenta, inertias): (&mut [Vector6<f64>], &mut [nalgebra::Matrix6<f64>]),
+        (momenta, coefficients): (&[Vector6<f64>], &mut Coefficients),
     ) -> Result<(), (usize, f64)> {
-        for (body, momentum) in momenta.iter_mut().enumerate() {
-            let (_, bias, inertia) = self.at_rest(body, &bodies[body]);
-            inertias[body] = inertia;
-            *momentum = bias - *momentum;
+        self.set_limit(bodies, coefficients);
+        for (bias, momentum) in coefficients.vectors.iter_mut().zip(momenta) {
+            *bias -= momentum;
         }
-        equations.set_velocities(self.joints(), &self.tree, places, inertias);
+        equations.set_velocities(self.joints(), &self.tree, places, coefficients);
         if let Some(redundant) = equations.redundant(&self.tree) {
             return Err(redundant);
         }
-        equations.solve(&self.tree, momenta, |_| Vector6::zeros());
+        equations.solve(&self.tree, &coefficients.vectors, |_| Vector6::zeros());
         Ok(())
     }
 
@@ -196,7 +196,7 @@ impl MultibodyStepper {
 
     /// Adds half of a step's impulse of these forces.
     fn push(&self, state: &mut [f64], work: &mut Workspace, force: &[Vector6<f64>]) -> Result<(), StepError> {
-        work.fit(self.bodies());
+        work.fit(self.bodies(), self.tree.couplings.len());
         work.equations.fit(self.joints(), &self.tree);
         for (body, force) in force.iter().enumerate() {
             work.next[body] = body_at(state, body);

@@ -8,9 +8,10 @@ use super::Body;
 use super::constraint::Constraint;
 use super::functions::Erased;
 use super::graph::Joined;
+use super::part::BodyPart;
 use super::terms::{BodyTerm, PairTerm, of_body, of_pair};
 use crate::error::SetupError;
-use crate::groups::{CayleyRetraction, R3, SO3};
+use crate::groups::{CayleyRetraction, Pair};
 use crate::mechanics::Effect;
 
 /// A system of rigid bodies, with terms on them and between them, and with joints. Bodies are counted from zero.
@@ -94,7 +95,7 @@ pub struct Multibody {
 }
 
 /// A term between two bodies; `None` is space.
-type PlacedPair = ([Option<usize>; 2], Arc<dyn PairTerm>);
+pub(super) type PlacedPair = ([Option<usize>; 2], Arc<dyn PairTerm>);
 
 impl Multibody {
     /// A system without bodies.
@@ -106,7 +107,7 @@ impl Multibody {
     /// Adds a body with its kinetic term; returns its number.
     pub fn body<E>(&mut self, term: E) -> usize
     where
-        E: Effect<Scalar = f64, Group = (SO3, R3), Retraction = CayleyRetraction> + Send + Sync + 'static,
+        E: Effect<Scalar = f64, Group: BodyPart, Retraction = CayleyRetraction> + Send + Sync + 'static,
         E::Constants: Send + Sync,
         E::Advected: Send + Sync,
     {
@@ -119,7 +120,7 @@ impl Multibody {
     /// Adds a further term to a body.
     pub fn on<E>(&mut self, body: usize, term: E)
     where
-        E: Effect<Scalar = f64, Group = (SO3, R3), Retraction = CayleyRetraction> + Send + Sync + 'static,
+        E: Effect<Scalar = f64, Group: BodyPart, Retraction = CayleyRetraction> + Send + Sync + 'static,
         E::Constants: Send + Sync,
         E::Advected: Send + Sync,
     {
@@ -129,7 +130,7 @@ impl Multibody {
     /// Adds a potential between two bodies, or between space, `None`, and a body. It is a term of the ends of a step.
     pub fn between<E>(&mut self, bodies: [Option<usize>; 2], term: E)
     where
-        E: Effect<Scalar = f64, Group = (SO3, R3, SO3, R3), Retraction = CayleyRetraction> + Send + Sync + 'static,
+        E: Effect<Scalar = f64, Group: Pair<Body: BodyPart>, Retraction = CayleyRetraction> + Send + Sync + 'static,
         E::Constants: Send + Sync,
         E::Advected: Send + Sync,
     {
