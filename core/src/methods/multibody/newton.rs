@@ -18,6 +18,14 @@ use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETT
 /// The relative rounding error of an update, by places and by opposed forces.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
+/// The longest update, relative to the unknowns, that is rounding if it isn't a quarter of the one before; both as
+/// squares.
+///
+/// The updates of bodies whose masses differ by `r` have rounding errors of `r ε`. An update of Newton's iteration is
+/// `C` times the square of the one before. At this length one that isn't rounding is a quarter of it only for `C`
+/// above two millions, where chains in a close pass have some thousand.
+const ROUNDING: (f64, f64) = (1e-14, 1.0 / 16.0);
+
 /// The squared lengths of the turn and of the shift.
 fn squares(of: &Vector6<f64>) -> Vector2<f64> {
     let (turn, shift) = parts(of);
@@ -117,17 +125,21 @@ impl<'a> Problem<'a> {
 
     /// The number of iterations, and whether they converged near the identity with all determinants positive.
     fn attempt(&mut self, most: u32, longest: f64) -> (u32, bool) {
-        let mut made = 0;
+        // The length of the last update, if it wasn't shortened.
+        let (mut made, mut before) = (0, f64::INFINITY);
         for _ in 0..most {
             made += 1;
             let Update { length: update, size, largest, rounded } = self.newton(longest);
             if !size.is_finite() {
                 return (made, false);
             }
-            if update <= (size * (f64::EPSILON * SETTLED)).max(rounded) {
+            let is_rounding = before.max(update) <= size * ROUNDING.0 && update >= before * ROUNDING.1;
+            if update <= (size * (f64::EPSILON * SETTLED)).max(rounded) || is_rounding {
                 return (made, self.is_wanted());
             }
-            if largest <= longest * longest && may_suffice(update, size) {
+            let is_whole = largest <= longest * longest;
+            before = if is_whole { update } else { f64::INFINITY };
+            if is_whole && may_suffice(update, size) {
                 let second = self.simplified();
                 made += 1;
                 if second.length <= second.rounded || has_sufficed(update, second.length, second.size) {
