@@ -267,8 +267,9 @@ impl Equations {
     /// The largest distance of a body from the origin, or of a joint's points from their body, m. The rounding errors
     /// of positions are relative to this length.
     pub(super) fn extent(&self, places: &[Place]) -> f64 {
-        let of_bodies = self.nodes.iter().flat_map(|node| &node.ends);
-        let arms = of_bodies.chain(self.loops.iter().flat_map(|closing| &closing.ends)).map(Ends::squared_arm);
+        let of_bodies = self.nodes.iter().flat_map(|node| node.ends.iter().map(|ends| ends.squared_arm(node.rows)));
+        let of_loops = self.loops.iter().flat_map(|closing| &closing.ends).map(|ends| ends.squared_arm(6));
+        let arms = of_bodies.chain(of_loops);
         places.iter().map(|place| place.position.norm_squared()).chain(arms).fold(0.0, f64::max).sqrt()
     }
 

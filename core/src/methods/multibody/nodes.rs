@@ -29,9 +29,9 @@ impl Ends {
         [0, 3].map(|first| self.before.fixed_view::<3, 1>(first, row).norm_squared())
     }
 
-    /// The square of the longest lever arm of the functions, m²; zero if they compare only directions.
-    pub(super) fn squared_arm(&self) -> f64 {
-        (0..6).fold(0.0, |longest: f64, row| {
+    /// The square of the longest lever arm of the first `rows` functions, m²; zero if they compare only directions.
+    pub(super) fn squared_arm(&self, rows: usize) -> f64 {
+        (0..rows).fold(0.0, |longest: f64, row| {
             let [turns, shifts] = self.rates(row);
             if shifts > 0.0 { longest.max(turns / shifts) } else { longest }
         })
@@ -40,7 +40,7 @@ impl Ends {
     /// The size of each function's terms for a `turn` in rad or rad/s and a `shift` in m or m/s; the shift counts at
     /// least as the lever arm times the turn.
     pub(super) fn sizes(&self, turn: f64, shift: f64) -> Vector6<f64> {
-        let shift = shift.max(self.squared_arm().sqrt() * turn);
+        let shift = shift.max(self.squared_arm(6).sqrt() * turn);
         Vector6::from_fn(|row, _| {
             let [turns, shifts] = self.rates(row).map(f64::sqrt);
             turns * turn + shifts * shift

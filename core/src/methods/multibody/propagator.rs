@@ -25,8 +25,8 @@ impl MultibodyStepper {
             before.clear();
             before.extend_from_slice(state);
             let mut iterations = 0;
-            let made = (0..steps).try_for_each(|_| {
-                iterations += u64::from(self.step_in(state, work, None)?.iterations);
+            let made = (0..steps).try_for_each(|step| {
+                iterations += u64::from(self.step_in(state, work, None, step > 0)?.iterations);
                 Ok(())
             });
             if made.is_err() {
@@ -44,7 +44,7 @@ impl MultibodyStepper {
     /// [`StepError`] that names a body or a joint, see the type's contract.
     pub fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
         self.check(state)?;
-        with_workspace(|work| self.step_in(state, work, None))
+        with_workspace(|work| self.step_in(state, work, None, false))
     }
 }
 

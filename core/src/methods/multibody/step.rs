@@ -20,12 +20,14 @@ use crate::motion::StepReport;
 const STEPS_BETWEEN_CHECKS: f64 = 64.0;
 
 impl MultibodyStepper {
-    /// Makes one step of a slice that is a state; on an error it is unchanged. Adds the joints' forces.
+    /// Makes one step of a slice that is a state; on an error it is unchanged. Adds the joints' forces. Slopes at the state
+    /// are known if the workspace has just made the step that ends there, with nothing in between.
     pub(super) fn step_in(
         &self,
         state: &mut [f64],
         work: &mut Workspace,
         forces: Option<&mut [Vector6<f64>]>,
+        are_slopes_known: bool,
     ) -> Result<StepReport, StepError> {
         let (offsets, steps) = (self.offsets, self.offsets.steps(state));
         if self.h == 0.0 {
@@ -34,9 +36,12 @@ impl MultibodyStepper {
         }
         work.fit(self.bodies(), self.tree.couplings.len());
         work.equations.fit(self.joints(), &self.tree);
-        self.load(state, work, steps)?;
+        let is_due = steps % STEPS_BETWEEN_CHECKS == 0.0;
+        self.load(state, work, is_due)?;
         self.kick_before(work);
-        work.equations.set_before(self.joints(), &self.tree, &work.places);
+        if is_due || !are_slopes_known {
+            work.equations.set_before(self.joints(), &self.tree, &work.places);
+        }
         let mut problem = Problem::new(self, work);
         let iterations = problem.solve()?;
         problem.set_next();
@@ -64,8 +69,7 @@ impl MultibodyStepper {
 
     /// Reads a state. Attitudes are projected onto the rotations if that is due: before the step, so that joints are
     /// closed after it.
-    fn load(&self, state: &[f64], work: &mut Workspace, steps: f64) -> Result<(), StepError> {
-        let is_due = steps % STEPS_BETWEEN_CHECKS == 0.0;
+    fn load(&self, state: &[f64], work: &mut Workspace, is_due: bool) -> Result<(), StepError> {
         for body in 0..self.bodies() {
             let now = body_at(state, body);
             let restored = if is_due { now.restored(0.0) } else { None };
@@ -184,7 +188,7 @@ impl MultibodyStepper {
             next.extend_from_slice(state);
             let made = self
                 .push(&mut next, work, force)
-                .and_then(|()| self.step_in(&mut next, work, None))
+                .and_then(|()| self.step_in(&mut next, work, None, false))
                 .and_then(|report| self.push(&mut next, work, force).map(|()| report));
             if made.is_ok() {
                 state.copy_from_slice(&next);

@@ -325,7 +325,7 @@ impl MultibodyStepper {
             return Ok(forces);
         }
         let mut state = state.to_vec();
-        with_workspace(|work| self.step_in(&mut state, work, Some(&mut forces)))?;
+        with_workspace(|work| self.step_in(&mut state, work, Some(&mut forces), false))?;
         Ok(forces)
     }
 

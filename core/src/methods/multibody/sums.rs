@@ -74,11 +74,15 @@ impl MultibodyStepper {
         a: &Vector6<f64>,
         half: &Vector6<f64>,
     ) -> (Vector6<f64>, Matrix6<f64>) {
-        let (mut sum, mut a) = ((Vector6::zeros(), Matrix6::zeros()), *a);
-        for term in self.terms(body).filter(|term| term.has_unknown()) {
+        let mut terms = self.terms(body).filter(|term| term.has_unknown());
+        let Some(first) = terms.next() else { return (Vector6::zeros(), Matrix6::zeros()) };
+        let (mut sum, mut left) = (first.newton_system(now, a, half), None);
+        let mut before = first;
+        for term in terms {
+            let a = before.remainder(left.as_ref().unwrap_or(a));
             let (residual, matrix) = term.newton_system(now, &a, half);
             sum = (sum.0 + residual, sum.1 + matrix);
-            a = term.remainder(&a);
+            (before, left) = (term, Some(a));
         }
         sum
     }
