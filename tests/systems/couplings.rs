@@ -210,8 +210,7 @@ fn a_step_is_that_of_the_virtual_work() {
         };
         let of_bars = [BARS.legendre_minus(&turns, &bars, h), BARS.legendre_plus(&turns, &bars, h)];
         for (body, (of_body, momenta)) in [(now.1, next.1), (before.1, after.1)].into_iter().enumerate() {
-            let w = bodies[body].advected();
-            let alone = [bodies[body].legendre_minus(&f[body], &w, h), bodies[body].legendre_plus(&f[body], &w, h)];
+            let alone = [bodies[body].legendre_minus(&f[body], &(), h), bodies[body].legendre_plus(&f[body], &(), h)];
             let ends = [[1.0, 0.0], [0.0, 1.0]].map(|end| Vector3::from_fn(|k, _| work(end, body, k)));
             let of_pair = of_bars.map(|both| both.fixed_rows::<3>(3 * body).into_owned());
             let zero = Vector3::zeros();

@@ -207,7 +207,7 @@ impl MultibodyStepper {
     /// If there is no such body, or if the slice is no state of this [`layout`](crate::motion::Propagator::layout).
     #[must_use]
     pub fn velocity(&self, state: &[f64], body: usize) -> Vector6<f64> {
-        if self.couples_velocities() {
+        if !self.couplings.is_empty() {
             return self.velocities_of(&self.attitudes(state), &self.momenta(state))[body];
         }
         self.velocity_of(body, &self.attitude(state, body), &self.momentum(state, body))

@@ -122,10 +122,8 @@ impl MultibodyStepper {
         let space = space();
         for &coupling in &self.couplings {
             let (bodies, term) = &self.system.pairs[coupling.pair];
-            if term.has_inertia() {
-                let (_, momenta, inertia) = term.at_rest(self.ends(coupling.pair, now, &space));
-                coefficients.add(bodies, coupling, &momenta, &inertia);
-            }
+            let (_, momenta, inertia) = term.at_rest(self.ends(coupling.pair, now, &space));
+            coefficients.add(bodies, coupling, &momenta, &inertia);
         }
     }
 
@@ -169,7 +167,7 @@ impl MultibodyStepper {
 
     /// The velocities of these momenta.
     pub(super) fn velocities_of(&self, now: &[Body], momenta: &[Vector6<f64>]) -> Vec<Vector6<f64>> {
-        if !self.couples_velocities() {
+        if self.couplings.is_empty() {
             return (0..self.bodies()).map(|body| self.velocity_of(body, &now[body], &momenta[body])).collect();
         }
         let coefficients = self.limit(now);
@@ -191,11 +189,6 @@ impl MultibodyStepper {
         set_blocks(&self.free, &mut nodes, &limit.blocks);
         factorise(&self.free, &mut nodes, &mut []);
         nodes
-    }
-
-    /// Whether a term between two bodies couples their velocities.
-    pub(super) fn couples_velocities(&self) -> bool {
-        self.couplings.iter().any(|coupling| self.system.pairs[coupling.pair].1.has_inertia())
     }
 
     /// The velocity of a momentum, without terms between bodies.
@@ -227,9 +220,9 @@ impl MultibodyStepper {
         })
     }
 
-    /// Checks that the inertia of all bodies together is positive, if terms between them have a part of it.
+    /// Checks that the inertia of all bodies together is positive, if terms couple them.
     pub(super) fn check_coupled_inertia(&self, now: &[Body]) -> Result<(), SetupError> {
-        if !self.couples_velocities() {
+        if self.couplings.is_empty() {
             return Ok(());
         }
         // A NaN counts as the wrong sign.

@@ -9,7 +9,7 @@ use super::part::BodyPart;
 use super::{Body, Increment};
 use crate::error::SetupError;
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup, Pair, SquareOf};
-use crate::mechanics::{Effect, KineticPart as _, SceneVisitor};
+use crate::mechanics::{Effect, SceneVisitor};
 use crate::numbers::Coordinates as _;
 
 /// The blocks of a matrix of two bodies, row by row.
@@ -63,9 +63,6 @@ pub(super) trait PairTerm: Send + Sync {
 
     /// Whether the term couples the equations for the increments of its bodies.
     fn has_unknown(&self) -> bool;
-
-    /// Whether the term couples velocities: its limit has an inertia.
-    fn has_inertia(&self) -> bool;
 
     fn kick_before(&self, now: [&Body; 2]) -> Option<[Vector6<f64>; 2]>;
 
@@ -264,10 +261,6 @@ where
 
     fn has_unknown(&self) -> bool {
         E::parts(&self.0.constants).unknown
-    }
-
-    fn has_inertia(&self) -> bool {
-        E::Kinetic::IS_THERE && self.has_unknown()
     }
 
     fn kick_before(&self, now: [&Body; 2]) -> Option<[Vector6<f64>; 2]> {

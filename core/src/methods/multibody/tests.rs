@@ -237,6 +237,18 @@ impl Bars {
     };
 }
 
+/// A term that is linear in the velocities of both bodies, and depends on their attitudes.
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(Q = F_2.seen_from(F_1)),
+    l_d = c * (vee(F_1).dot(&(Q * e)) + 2.0 * vee(F_2).dot(&(Q.transpose() * e))),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Magnet {
+    c: f64,
+    e: Vector3<f64>,
+}
+
 /// A damper between a body and a point of space or of another body.
 #[force(
     group(d_1 = R3, d_2 = R3),
@@ -263,6 +275,7 @@ fn coupled(h: f64) -> MultibodyStepper {
     system.between([Some(1), Some(2)], Bars::OURS);
     system.between([Some(0), Some(3)], Bars::OURS);
     system.between([None, Some(3)], Rubbing { c: 0.3 });
+    system.between([Some(3), Some(2)], Magnet { c: 0.6, e: Vector3::new(0.3, -0.2, 0.5) });
     system.between([Some(2), None], Dashpot { c: 0.2 });
     system.on(2, Drag { c: 0.1, J: rod(1.0, 0.0).J_d.to_inertia() });
     system.stepper(h).unwrap()
@@ -331,7 +344,8 @@ fn elimination_along_the_tree_is_that_of_the_whole_matrix() {
     equations.set_before(stepper.joints(), &stepper.tree, &places);
     equations.set_after(stepper.joints(), &stepper.tree, &places, &turns);
     equations.factorise(&stepper.tree, &coefficients);
-    let gaps = |joint: usize| Vector6::from_fn(|row, _| if row < 3 { (joint + row) as f64 * 0.1 - 0.2 } else { 0.0 });
+    let number = |k: usize| f64::from(u8::try_from(k).unwrap());
+    let gaps = |joint: usize| Vector6::from_fn(|row, _| if row < 3 { number(joint + row) * 0.1 - 0.2 } else { 0.0 });
     equations.solve(&stepper.tree, &coefficients.vectors, gaps);
     let mut whole = DMatrix::zeros(36, 36);
     whole.view_mut((0, 0), (24, 24)).copy_from(&assembled(&stepper, &coefficients));
@@ -380,6 +394,12 @@ fn velocities_are_those_of_the_coupled_inertia() {
     let momenta = stepper.momenta_of(&now, &velocities);
     let back = stepper.velocities_of(&now, &momenta);
     assert!(back.iter().zip(&velocities).all(|(a, b)| (a - b).amax() < 1e-13));
+    let still = stepper.momenta_of(&now, &[Vector6::zeros(); 4]);
+    let [second, third] = [2, 3].map(|body: usize| *now[body].0.as_matrix());
+    let e = Vector3::new(0.3, -0.2, 0.5);
+    let expected = [second.tr_mul(&(third * e)) * 1.2, third.tr_mul(&(second * e)) * 0.6];
+    let off = [2, 3].map(|body| (still[body].fixed_rows::<3>(0) - expected[body - 2]).amax());
+    assert!(off.iter().all(|&off| off < 1e-14) && still[0].amax() < 1e-14, "{off:?}");
     // The kinetic energy of the bars is half the sum of the squares of their ends' relative velocities.
     let Bars { A, B, .. } = Bars::OURS;
     let of_bars = |[one, other]: [usize; 2]| {
