@@ -2,6 +2,7 @@
 //!
 //! All tests are in one crate, so that the declarations on SE(3) are expanded once.
 
+mod couplings;
 mod energy;
 mod limit;
 mod structure;

@@ -352,3 +352,67 @@ fn the_plane_of_the_motion() {
     let free = format!("title = \"free\"\n{}[run]\nstep = 0.1\nduration = 1\n", free("a", [0.0; 3], still));
     shows(&picture(&free), "x, m", "y, m");
 }
+
+/// An arm on a vertical pin and a rod on its end, with friction of 0.1 N m s in both joints. A solver of order eight, by
+/// Newton's and Euler's equations, has these places after a second.
+const FURUTA: &str = r#"
+title = "furuta"
+[gravity]
+g = 9.81
+up = [0, 0, 1]
+[[body]]
+name = "arm"
+m = 0.2
+moments = [0.0002, 0.0016, 0.0016]
+position = [0.15, 0, 0]
+moving = [0, 0.45, 0]
+start.euler = [0, 0, 0]
+start.velocity = [0, 0, 3]
+[[body]]
+name = "rod"
+m = 0.1
+moments = [0.0014, 0.0014, 0.0001]
+position = [0.3, 0.18185948536513635, 0.08322936730942848]
+moving = [-0.5455784560954091, 0.8167706326905715, 0.18185948536513635]
+start.euler = [0, 2, 0]
+start.velocity = [1, 2.727892280477045, -1.2484405096414273]
+[[joint]]
+kind = "pin"
+bodies = ["space", "arm"]
+at = [[0, 0, 0], [-0.15, 0, 0]]
+axes = [[0, 0, 1], [0, 0, 1]]
+damping = "0.1 N m s"
+[[joint]]
+kind = "pin"
+bodies = ["rod", "arm"]
+at = [[0, 0, 0.2], [0.15, 0, 0]]
+axes = [[1, 0, 0], [1, 0, 0]]
+damping = 0.1
+[run]
+step = "1 ms"
+duration = 1
+"#;
+
+#[test]
+fn joints_have_friction() {
+    let end = |text: &str| system(text).run().unwrap().samples().last().unwrap().clone();
+    let expected = [
+        Vector3::new(0.122_658_176_638, 0.086_342_178_012, 0.0),
+        Vector3::new(0.194_560_588_851, 0.244_788_276_282, -0.179_512_888_286),
+    ];
+    let last = end(FURUTA);
+    for (body, expected) in last.bodies.iter().zip(expected) {
+        let off = (body.position - expected).norm();
+        println!("{off:e}");
+        assert!(off < 2e-6, "{off:e}");
+    }
+    assert!((last.energy + 0.173_729_646).abs() < 1e-5, "{}", last.energy);
+    let without =
+        system(&FURUTA.replace("damping = 0.1\n", "").replace("damping = \"0.1 N m s\"\n", "")).run().unwrap();
+    let energies = [without.samples().first(), without.samples().last()].map(|sample| sample.unwrap().energy);
+    assert!((energies[1] - energies[0]).abs() < 1e-4 && energies[0] > last.energy + 0.1, "{energies:?}");
+    for (wrong, told) in [("-0.1", "above zero"), ("\"1 N m\"", "N m s")] {
+        let message = message(&FURUTA.replace("damping = 0.1", &format!("damping = {wrong}")));
+        assert!(message.contains(told), "{message}");
+    }
+}

@@ -15,7 +15,7 @@ use crate::file::column::{Column, Output};
 use crate::file::mistake::{Mistake, Wrong, advised, place_of};
 use crate::file::picture::PlanePicture;
 use crate::file::quantity::{
-    Acceleration, Direction, Duration, Length, Mass, Positive, Scalar, Speed, Stiffness, Triple, round, short,
+    Acceleration, Damping, Direction, Duration, Length, Mass, Positive, Scalar, Speed, Stiffness, Triple, round, short,
 };
 use crate::file::schedule::{equal_steps, fraction};
 use crate::file::start::Start;
@@ -28,7 +28,7 @@ use crate::file::text::title;
 /// | | `title` |
 /// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile) |
 /// | `gravity` | `g`, m/s²; `up`, in space |
-/// | `[[joint]]` | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` of a pin: an axis in each of the same frames |
+/// | `[[joint]]` | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` of a pin: an axis in each of the same frames; `damping`, N m s: the torque of friction is it times the relative angular velocity |
 /// | `[[spring]]` | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
 /// | `run` | `duration`; `step`, of which the duration is a whole number; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
 /// | `picture` | `plane`: `xy`, `xz`, `yz`; by default the plane in which the motion is the widest |
@@ -85,6 +85,8 @@ pub(crate) struct Between<T> {
 pub(crate) struct Joint {
     pub(crate) at: [Vector3<f64>; 2],
     pub(crate) axes: Option<[Vector3<f64>; 2]>,
+    /// The coefficient of friction, N m s.
+    pub(crate) damping: Option<f64>,
 }
 
 /// A spring between two points, from their centres of mass.
@@ -150,6 +152,7 @@ struct JointTable {
     bodies: Names,
     at: [Triple<Length>; 2],
     axes: Option<Spanned<[Direction; 2]>>,
+    damping: Option<Positive<Damping>>,
 }
 
 #[derive(Deserialize)]
@@ -351,7 +354,7 @@ fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], W
 }
 
 fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<Between<Joint>, Wrong> {
-    let JointTable { kind, bodies: names, at, axes } = joint;
+    let JointTable { kind, bodies: names, at, axes, damping } = joint;
     let mut between = numbers(&names, bodies)?;
     let mut ends = at.map(|point| point.value);
     let mut axes_of = axes.as_ref().map(|axes| axes.get_ref().each_ref().map(|axis| axis.0));
@@ -373,5 +376,6 @@ fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<Between<Joint>, 
         }
         _ => (),
     }
-    Ok(Between { bodies: between, of: Joint { at: ends, axes: axes_of } })
+    let damping = damping.map(|damping| damping.value);
+    Ok(Between { bodies: between, of: Joint { at: ends, axes: axes_of, damping } })
 }

@@ -3,7 +3,7 @@
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
 use liestep::methods::{BallJoint, Multibody, MultibodyStepper, PinJoint};
-use liestep::{NonstandardInertia, SO3, SetupError, lagrangian};
+use liestep::{NonstandardInertia, SO3, SetupError, force, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
 use crate::file::body::Kinetic;
@@ -73,6 +73,22 @@ pub(crate) struct Cord {
     at_2: Vector3<f64>,
 }
 
+/// Friction in a joint: the torque `c` times the relative angular velocity, half of its impulse at either end of a step.
+#[force(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(Q = F_2.seen_from(F_1)),
+    displacement(eta_1, eta_2),
+    work = {
+        let turn = Q * log(F_2) - log(F_1);
+        -0.5 * c * (turn.dot(&(Q * eta_2 - eta_1)) + turn.dot(&(Q * (F_2 * eta_2_next) - F_1 * eta_1_next)))
+    },
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Friction {
+    /// Coefficient, N m s.
+    c: f64,
+}
+
 impl System {
     pub(crate) fn stepper(&self) -> Result<MultibodyStepper, SetupError> {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
@@ -89,13 +105,16 @@ impl System {
                 system.between(bodies, Coil { k, length, at_1, at_2 });
             }
         }
-        for &Between { bodies: [above, below], of: Joint { at, axes } } in &self.joints {
+        for &Between { bodies: [above, below], of: Joint { at, axes, damping } } in &self.joints {
             let (ball, below) = (BallJoint { above: at[0], below: at[1] }, below.unwrap_or_default());
             if let Some([axis_above, axis_below]) = axes {
                 let pin = PinJoint { above: ball.above, below: ball.below, axis_above, axis_below };
                 system.join(pin, above, below);
             } else {
                 system.join(ball, above, below);
+            }
+            if let Some(c) = damping {
+                system.between([above, Some(below)], Friction { c });
             }
         }
         system.stepper(self.step)

@@ -157,7 +157,7 @@ impl System {
     fn free_motions(&self, places: &[(SO3, R3)]) -> Option<DMatrix<f64>> {
         let mut held: Vec<Matrix3xX<f64>> = Vec::new();
         for joint in &self.joints {
-            let Joint { at: ends, axes } = joint.of;
+            let Joint { at: ends, axes, .. } = joint.of;
             let apart = |of: &dyn Fn(usize) -> Matrix3xX<f64>| of(1) - of(0);
             held.push(apart(&|side| self.moved(places, joint.bodies[side], &ends[side])));
             // Axes turn with their bodies, and shifts don't change them.

@@ -21,156 +21,23 @@
 //! loops are a border: with the solution `Y` for their columns `Eᵀ`, `S_L = −C_L Y` are the equations of their
 //! multipliers.
 //!
+//! Terms that couple two bodies `c` and `n` within a step add a block `L_cn` to the equations of the one and `M_nc` to
+//! those of the other. If `c` is eliminated first, and `b` is its parent,
+//!
+//! ```text
+//! Z_n = A_c⁻¹ L_cn      P_n = S⁻¹ (δ_nb C_jb − C_jc Z_n)      p_j = s + Σ_n P_n y_n      y_c = −w − Σ_n Z_n y_n − X p_j
+//! A_mn ← A_mn + δ_mb E_jbᵀ P_n − M_mc (Z_n + X P_n)          r_m ← r_m + δ_mb E_jbᵀ s − M_mc (w + X s)
+//! ```
+//!
+//! for all neighbours `m` and `n` of `c`. Between neighbours in a tree only their own blocks are filled.
+//!
 //! Matrices have room for six functions; the loops over those that a joint has are compiled for each number of them.
-
-use alloc::vec;
-use alloc::vec::Vec;
 
 use nalgebra::{Matrix6, SMatrix, Vector2, Vector6};
 
-roots!();
-
-use super::graph::{Member, Tree};
+use super::graph::Tree;
+use super::nodes::{Block, Closing, Ends, Node, Unknowns, add};
 use crate::numbers::{Coordinates as _, Pattern};
-
-/// The two derivative maps at one end of a joint, a column for each of its functions.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ends {
-    /// The matrix `Eᵀ` from multipliers to the body's momentum, torque in its axes first.
-    pub(super) before: Matrix6<f64>,
-    /// The matrix `Cᵀ`, the transpose of the map from the body's unknowns to the functions.
-    pub(super) after: Matrix6<f64>,
-}
-
-impl Ends {
-    pub(super) const ZERO: Self = Self {
-        before: Matrix6::from_array_storage(nalgebra::ArrayStorage([[0.0; 6]; 6])),
-        after: Matrix6::from_array_storage(nalgebra::ArrayStorage([[0.0; 6]; 6])),
-    };
-
-    /// The squared rates of a function per unit of the body's turn, and of its shift.
-    fn rates(&self, row: usize) -> [f64; 2] {
-        [0, 3].map(|first| self.before.fixed_view::<3, 1>(first, row).norm_squared())
-    }
-
-    /// The square of the longest lever arm of the functions, m²; zero if they compare only directions.
-    pub(super) fn squared_arm(&self) -> f64 {
-        (0..6).fold(0.0, |longest: f64, row| {
-            let [turns, shifts] = self.rates(row);
-            if shifts > 0.0 { longest.max(turns / shifts) } else { longest }
-        })
-    }
-
-    /// The size of each function's terms for a `turn` in rad or rad/s and a `shift` in m or m/s; the shift counts at
-    /// least as the lever arm times the turn.
-    pub(super) fn sizes(&self, turn: f64, shift: f64) -> Vector6<f64> {
-        let shift = shift.max(self.squared_arm().sqrt() * turn);
-        Vector6::from_fn(|row, _| {
-            let [turns, shifts] = self.rates(row).map(f64::sqrt);
-            turns * turn + shifts * shift
-        })
-    }
-
-    /// The momentum `Eᵀ p` of these multipliers.
-    pub(super) fn momentum(&self, multipliers: &Vector6<f64>) -> Vector6<f64> {
-        self.before * multipliers
-    }
-}
-
-/// The equations of a body, and their factors after elimination.
-#[derive(Clone, Copy)]
-pub(super) struct Node {
-    /// The matrix `A_b`; after elimination, its factors.
-    pub(super) matrix: Matrix6<f64>,
-    /// The determinant relative to the product of the diagonal, once all descendants are eliminated.
-    pub(super) determinant: f64,
-    /// The maps `E` and `C` of the joint towards the root, for this body and for its parent.
-    pub(super) ends: [Ends; 2],
-    /// The number of functions of that joint.
-    pub(super) rows: usize,
-    has_parent: bool,
-    /// The least pivot of that joint, relative to the diagonal; one if there is no joint.
-    pub(super) pivot: f64,
-    /// The determinant of that joint's matrix `S`, relative to the absolute values of its diagonal; one if there is no
-    /// joint.
-    pub(super) of_joint: f64,
-    x: Matrix6<f64>,
-    inverse: Matrix6<f64>,
-    p: Matrix6<f64>,
-}
-
-impl Node {
-    pub(super) fn new(rows: usize, has_parent: bool) -> Self {
-        let zero = Matrix6::zeros();
-        let (ends, x, inverse, p) = ([Ends::ZERO; 2], zero, zero, zero);
-        Self { matrix: zero, determinant: 1.0, ends, rows, has_parent, pivot: 1.0, of_joint: 1.0, x, inverse, p }
-    }
-
-    /// Whether these are the equations of a body with such a joint: what isn't overwritten is the same.
-    pub(super) fn is_like(&self, rows: usize, parent: Option<usize>) -> bool {
-        self.rows == rows && self.has_parent == parent.is_some()
-    }
-}
-
-/// The equations of a joint that closes a loop, and their factors after elimination.
-#[derive(Clone)]
-pub(super) struct Closing {
-    /// The bodies below and above; `None` is space.
-    pub(super) bodies: [Option<usize>; 2],
-    pub(super) ends: [Ends; 2],
-    /// The number of functions of the joint.
-    rows: usize,
-    /// The bodies' part `Y` of the solution for the joint's columns, one column after the other, and its multipliers at
-    /// the trees' joints.
-    columns: Vec<Vector6<f64>>,
-    multipliers: Vec<Vector6<f64>>,
-    /// A row of the factors of `S_L`, with the inverse pivots on the diagonal.
-    row: Vec<Matrix6<f64>>,
-    /// The diagonal of `S_L` if both bodies were free.
-    free: Vector6<f64>,
-    /// The least pivot, relative to `free`.
-    pub(super) pivot: f64,
-    /// The determinant of the pivot block, relative to the absolute values of `free`.
-    pub(super) of_joint: f64,
-}
-
-impl Closing {
-    /// A joint with this number of functions among `all` bodies and loops.
-    pub(super) fn new(bodies: [Option<usize>; 2], rows: usize, all: [usize; 2]) -> Self {
-        let zeros = vec![Vector6::zeros(); rows * all[0]];
-        Self {
-            bodies,
-            ends: [Ends::ZERO; 2],
-            rows,
-            columns: zeros.clone(),
-            multipliers: zeros,
-            row: vec![Matrix6::zeros(); all[1]],
-            free: Vector6::zeros(),
-            pivot: 1.0,
-            of_joint: 1.0,
-        }
-    }
-
-    /// Whether these are the equations of such a joint.
-    pub(super) fn is_like(&self, bodies: [Option<usize>; 2], rows: usize, all: [usize; 2]) -> bool {
-        self.bodies == bodies && self.rows == rows && self.columns.len() == rows * all[0] && self.row.len() == all[1]
-    }
-
-    /// The ends of the joint that are at bodies, not at space.
-    pub(super) fn ends(&self) -> impl Iterator<Item = (usize, &Ends)> {
-        let both = self.bodies.into_iter().zip(&self.ends);
-        both.filter_map(|(body, ends)| Some((body?, ends)))
-    }
-}
-
-/// The right-hand sides `r` and `g`, which the solution overwrites by `y` and `p`.
-#[derive(Clone, Default)]
-pub(super) struct Unknowns {
-    pub(super) bodies: Vec<Vector6<f64>>,
-    /// The multipliers of each body's joint towards the root.
-    pub(super) joints: Vec<Vector6<f64>>,
-    pub(super) loops: Vec<Vector6<f64>>,
-}
 
 /// Calls a function that is compiled for each number of functions of a joint.
 macro_rules! by_rows {
@@ -192,41 +59,76 @@ pub(super) fn factorise(tree: &Tree, nodes: &mut [Node], loops: &mut [Closing]) 
         closing.free = free(closing, nodes);
     }
     for &k in tree.order.iter().rev() {
-        let Member { joint, parent, .. } = tree.members[k];
         let node = &mut nodes[k];
         (node.matrix, node.determinant) = Vector6::factorise_apart(&node.matrix, Pattern::WHOLE);
-        if joint.is_none() {
-            continue;
+        for block in node.blocks.iter_mut().filter(|block| block.neighbour.is_coupled) {
+            block.z = solved(&node.matrix, &block.own);
         }
-        let added = by_rows!(node.rows, eliminated(node, parent.is_some()));
-        if let Some(parent) = parent {
-            nodes[parent].matrix += added;
+        if node.rows > 0 {
+            by_rows!(node.rows, eliminate_joint(node));
         }
+        // Additions to other nodes; the blocks of this one are complete.
+        let blocks = core::mem::take(&mut node.blocks);
+        for (m, row) in blocks.iter().enumerate() {
+            for column in &blocks {
+                let (node, is_parent) = (&nodes[k], m == 0);
+                let added = match node.rows {
+                    0 => -(row.other * column.z),
+                    rows => by_rows!(rows, complement(node, is_parent, row, column)),
+                };
+                add(nodes, [row.neighbour.body, column.neighbour.body], &added);
+            }
+        }
+        nodes[k].blocks = blocks;
     }
     if !loops.is_empty() {
         close(tree, nodes, loops);
     }
 }
 
-/// Eliminates a body's joint; returns the part of the parent's matrix, if there is a parent.
-fn eliminated<const K: usize>(node: &mut Node, has_parent: bool) -> Matrix6<f64> {
-    let [own, of_parent] = &node.ends;
-    let mut x = own.before.fixed_columns::<K>(0).into_owned();
-    for mut column in x.column_iter_mut() {
-        let solution = Vector6::solve_apart(&node.matrix, Pattern::WHOLE, &column.clone_owned());
+/// The solutions for all columns of the right-hand side.
+fn solved<const K: usize>(factors: &Matrix6<f64>, right: &SMatrix<f64, 6, K>) -> SMatrix<f64, 6, K> {
+    let mut all = *right;
+    for mut column in all.column_iter_mut() {
+        let solution = Vector6::solve_apart(factors, Pattern::WHOLE, &column.clone_owned());
         column.copy_from(&solution);
     }
-    let s: SMatrix<f64, K, K> = own.after.fixed_columns::<K>(0).tr_mul(&x);
+    all
+}
+
+/// Eliminates a body's joint.
+fn eliminate_joint<const K: usize>(node: &mut Node) {
+    let [own, of_parent] = &node.ends;
+    let x = solved(&node.matrix, &own.before.fixed_columns::<K>(0).into_owned());
+    let after = own.after.fixed_columns::<K>(0);
+    let s: SMatrix<f64, K, K> = after.tr_mul(&x);
     let (inverse, pivot, of_joint) = inverted(&s, &s.diagonal(), K);
     node.x.fixed_columns_mut::<K>(0).copy_from(&x);
     node.inverse.fixed_view_mut::<K, K>(0, 0).copy_from(&inverse);
     (node.pivot, node.of_joint) = (pivot, of_joint);
-    if !has_parent {
-        return Matrix6::zeros();
+    for (k, block) in node.blocks.iter_mut().enumerate() {
+        let is_parent = k == 0 && node.has_parent;
+        let mut right = if is_parent { of_parent.after.fixed_columns::<K>(0).transpose() } else { SMatrix::zeros() };
+        if block.neighbour.is_coupled {
+            right -= after.tr_mul(&block.z);
+        }
+        block.p.fixed_rows_mut::<K>(0).copy_from(&(inverse * right));
     }
-    let p = inverse * of_parent.after.fixed_columns::<K>(0).transpose();
-    node.p.fixed_rows_mut::<K>(0).copy_from(&p);
-    of_parent.before.fixed_columns::<K>(0) * p
+}
+
+/// The part that elimination adds to the equations of one neighbour in the columns of another.
+fn complement<const K: usize>(node: &Node, is_parent: bool, row: &Block, column: &Block) -> Matrix6<f64> {
+    let p = column.p.fixed_rows::<K>(0);
+    let joint = (is_parent && node.has_parent).then(|| node.ends[1].before.fixed_columns::<K>(0) * p);
+    if !row.neighbour.is_coupled {
+        return joint.unwrap_or_else(Matrix6::zeros);
+    }
+    let mut change = node.x.fixed_columns::<K>(0) * p;
+    if column.neighbour.is_coupled {
+        change += column.z;
+    }
+    let coupled = row.other * change;
+    joint.map_or(-coupled, |joint| joint - coupled)
 }
 
 /// The diagonal of `S_L` of a joint between bodies that were free.
@@ -332,52 +234,70 @@ fn substitute(
 ) -> Vector2<f64> {
     let mut size = Vector2::zeros();
     for &k in tree.order.iter().rev() {
-        let (node, member) = (&nodes[k], tree.members[k]);
+        let node = &nodes[k];
         let w = Vector6::solve_apart(&node.matrix, Pattern::WHOLE, &of_bodies[k]);
         of_bodies[k] = w;
         size += Vector2::new(w.fixed_rows::<3>(0).norm_squared(), w.fixed_rows::<3>(3).norm_squared());
-        if member.joint.is_none() {
-            continue;
-        }
-        let added = by_rows!(node.rows, outwards(node, &w, &mut of_joints[k]));
-        if let Some(parent) = member.parent {
-            of_bodies[parent] += added;
+        if node.rows > 0 {
+            by_rows!(node.rows, outwards(node, &w, &mut of_joints[k], of_bodies));
+        } else {
+            add_changes(node, &w, of_bodies);
         }
     }
     for &k in &tree.order {
-        let (node, member) = (&nodes[k], tree.members[k]);
-        of_bodies[k] = -of_bodies[k];
-        if member.joint.is_none() {
-            continue;
+        let node = &nodes[k];
+        let mut unknowns = -of_bodies[k];
+        for block in node.blocks.iter().filter(|block| block.neighbour.is_coupled) {
+            unknowns -= block.z * of_bodies[block.neighbour.body];
         }
-        let parent = member.parent.map(|parent| of_bodies[parent]);
-        by_rows!(node.rows, inwards(node, parent.as_ref(), &mut of_joints[k], &mut of_bodies[k]));
+        if node.rows > 0 {
+            by_rows!(node.rows, inwards(node, of_bodies, &mut of_joints[k], &mut unknowns));
+        }
+        of_bodies[k] = unknowns;
     }
     size
 }
 
-/// The multipliers `s`; returns the part `Eᵀ s` of the parent's right-hand side.
-fn outwards<const K: usize>(node: &Node, w: &Vector6<f64>, of_joint: &mut Vector6<f64>) -> Vector6<f64> {
+/// Adds the part of a body with `y = −change` to the right-hand sides of its neighbours.
+fn add_changes(node: &Node, change: &Vector6<f64>, of_bodies: &mut [Vector6<f64>]) {
+    for block in node.blocks.iter().filter(|block| block.neighbour.is_coupled) {
+        of_bodies[block.neighbour.body] -= block.other * change;
+    }
+}
+
+/// Sets the multipliers `s`, and adds to the right-hand sides of the neighbours.
+fn outwards<const K: usize>(
+    node: &Node,
+    w: &Vector6<f64>,
+    of_joint: &mut Vector6<f64>,
+    of_bodies: &mut [Vector6<f64>],
+) {
     let [own, of_parent] = &node.ends;
     let right = of_joint.fixed_rows::<K>(0) - own.after.fixed_columns::<K>(0).tr_mul(w);
     let s = node.inverse.fixed_view::<K, K>(0, 0) * right;
     of_joint.fixed_rows_mut::<K>(0).copy_from(&s);
-    of_parent.before.fixed_columns::<K>(0) * s
+    let Some(first) = node.blocks.first() else { return };
+    if node.has_parent {
+        of_bodies[first.neighbour.body] += of_parent.before.fixed_columns::<K>(0) * s;
+    }
+    if node.blocks.iter().any(|block| block.neighbour.is_coupled) {
+        add_changes(node, &(w + node.x.fixed_columns::<K>(0) * s), of_bodies);
+    }
 }
 
-/// The multipliers `p`, and the body's unknowns.
+/// Adds the neighbours' part to the multipliers, and the joint's to the body's unknowns.
 fn inwards<const K: usize>(
     node: &Node,
-    of_parent: Option<&Vector6<f64>>,
+    of_bodies: &[Vector6<f64>],
     of_joint: &mut Vector6<f64>,
-    of_body: &mut Vector6<f64>,
+    unknowns: &mut Vector6<f64>,
 ) {
     let mut p = of_joint.fixed_rows::<K>(0).into_owned();
-    if let Some(parent) = of_parent {
-        p += node.p.fixed_rows::<K>(0) * parent;
-        of_joint.fixed_rows_mut::<K>(0).copy_from(&p);
+    for block in &node.blocks {
+        p += block.p.fixed_rows::<K>(0) * of_bodies[block.neighbour.body];
     }
-    *of_body -= node.x.fixed_columns::<K>(0) * p;
+    of_joint.fixed_rows_mut::<K>(0).copy_from(&p);
+    *unknowns -= node.x.fixed_columns::<K>(0) * p;
 }
 
 /// The inverse by elimination in the order of the rows, the least pivot relative to `sizes`, and the determinant

@@ -7,8 +7,10 @@ use nalgebra::{Matrix3, Matrix6, Vector2, Vector6};
 roots!();
 
 use super::constraint::Place;
-use super::elimination::{Closing, Ends, Node, Unknowns, factorise, solve};
+use super::couplings::Coefficients;
+use super::elimination::{factorise, solve};
 use super::graph::{Joined, Member, Tree};
+use super::nodes::{Closing, Ends, Node, Unknowns, set_blocks};
 use super::{parts, place_of};
 
 /// The least pivot of a joint that closes a loop and isn't redundant, relative to that between free bodies. The
@@ -64,11 +66,17 @@ impl Equations {
     pub(super) fn fit(&mut self, joints: &[Joined], tree: &Tree) {
         let rows = |joint: Option<usize>| joint.map_or(0, |joint| joints[joint].functions.rows());
         let all = [tree.members.len(), tree.loops.len()];
-        let node = |member: &Member| Node::new(rows(member.joint), member.parent.is_some());
+        let node = |(member, neighbours): (&Member, &Vec<_>)| {
+            Node::new(rows(member.joint), member.parent.is_some(), neighbours)
+        };
+        let is_like = |(one, (member, neighbours)): (&Node, (&Member, &Vec<_>))| {
+            one.is_like(rows(member.joint), member.parent.is_some(), neighbours)
+        };
+        let members = || tree.members.iter().zip(&tree.neighbours);
         let bodies = |joint: usize| [Some(joints[joint].below), joints[joint].above];
         let fits = self.nodes.len() == all[0]
             && self.loops.len() == all[1]
-            && self.nodes.iter().zip(&tree.members).all(|(one, member)| one.is_like(rows(member.joint), member.parent))
+            && self.nodes.iter().zip(members()).all(is_like)
             && self
                 .loops
                 .iter()
@@ -78,7 +86,7 @@ impl Equations {
             return;
         }
         self.nodes.clear();
-        self.nodes.extend(tree.members.iter().map(node));
+        self.nodes.extend(members().map(node));
         self.loops.clear();
         self.loops.extend(tree.loops.iter().map(|&joint| Closing::new(bodies(joint), rows(Some(joint)), all)));
         self.unknowns.bodies.resize(all[0], Vector6::zeros());
@@ -125,13 +133,7 @@ impl Equations {
     }
 
     /// Sets the equations of velocities at these places, with `C = E`, by the inertias of the bodies.
-    pub(super) fn set_velocities(
-        &mut self,
-        joints: &[Joined],
-        tree: &Tree,
-        places: &[Place],
-        inertias: &[Matrix6<f64>],
-    ) {
+    pub(super) fn set_velocities(&mut self, joints: &[Joined], tree: &Tree, places: &[Place], inertias: &Coefficients) {
         self.set_before(joints, tree, places);
         let of_trees = self.nodes.iter_mut().flat_map(|node| &mut node.ends);
         let ends = of_trees.chain(self.loops.iter_mut().flat_map(|closing| &mut closing.ends));
@@ -139,11 +141,12 @@ impl Equations {
         self.factorise(tree, inertias);
     }
 
-    /// Factorises these matrices of the bodies.
-    pub(super) fn factorise(&mut self, tree: &Tree, matrices: &[Matrix6<f64>]) {
-        for (node, matrix) in self.nodes.iter_mut().zip(matrices) {
+    /// Factorises these matrices of the bodies and their blocks.
+    pub(super) fn factorise(&mut self, tree: &Tree, coefficients: &Coefficients) {
+        for (node, matrix) in self.nodes.iter_mut().zip(&coefficients.matrices) {
             node.matrix = *matrix;
         }
+        set_blocks(tree, &mut self.nodes, &coefficients.blocks);
         factorise(tree, &mut self.nodes, &mut self.loops);
     }
 
@@ -264,8 +267,9 @@ impl Equations {
     /// The largest distance of a body from the origin, or of a joint's points from their body, m. The rounding errors
     /// of positions are relative to this length.
     pub(super) fn extent(&self, places: &[Place]) -> f64 {
-        let of_bodies = self.nodes.iter().flat_map(|node| &node.ends);
-        let arms = of_bodies.chain(self.loops.iter().flat_map(|closing| &closing.ends)).map(Ends::squared_arm);
+        let of_bodies = self.nodes.iter().flat_map(|node| node.ends.iter().map(|ends| ends.squared_arm(node.rows)));
+        let of_loops = self.loops.iter().flat_map(|closing| &closing.ends).map(|ends| ends.squared_arm(6));
+        let arms = of_bodies.chain(of_loops);
         places.iter().map(|place| place.position.norm_squared()).chain(arms).fold(0.0, f64::max).sqrt()
     }
 

@@ -1,5 +1,7 @@
 //! Systems of rigid bodies with joints, as values: any number of bodies, of terms on them and between them, and of joints.
-//! A step of `N` bodies with `L` loops takes time `O(N + N L + L³)`.
+//! A step of `N` bodies with `L` loops takes time `O(N + N L + L³)`. Terms that couple two bodies within a step, as friction
+//! in a joint, add a block for each pair to Newton's matrix: the time stays so if pairs share a joint or are a row, and other
+//! pairs fill the blocks on the path between their bodies.
 //!
 //! The configurations of the bodies are `q = (R_a, x_a)` on (SO(3) × R³)ᴺ, and joints are constraints `g(q) = 0`. With
 //! the matrix `G` of the constraints' derivatives along `δR = R ẑ`, `δx`, a step is that of the bodies with the joints'
@@ -18,16 +20,20 @@
 //! in the multipliers, so they need no initial guess from the last step.
 
 mod constraint;
+mod couplings;
 mod elimination;
 mod equations;
 mod functions;
 mod graph;
 mod newton;
+mod nodes;
+mod part;
 mod propagator;
 mod start;
 mod state;
 mod step;
 mod stepper;
+mod sums;
 mod system;
 mod terms;
 #[cfg(test)]
@@ -35,6 +41,7 @@ mod tests;
 mod workspace;
 
 pub use constraint::{BallJoint, Constraint, PinJoint, Place, Slope};
+pub use part::BodyPart;
 pub use stepper::MultibodyStepper;
 pub use system::Multibody;
 

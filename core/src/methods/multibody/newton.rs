@@ -18,6 +18,14 @@ use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETT
 /// The relative rounding error of an update, by places and by opposed forces.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
+/// The longest update, relative to the unknowns, that is rounding if it isn't a quarter of the one before; both as
+/// squares.
+///
+/// The updates of bodies whose masses differ by `r` have rounding errors of `r ε`. An update of Newton's iteration is
+/// `C` times the square of the one before. At this length one that isn't rounding is a quarter of it only for `C`
+/// above two millions, where chains in a close pass have some thousand.
+const ROUNDING: (f64, f64) = (1e-14, 1.0 / 16.0);
+
 /// The squared lengths of the turn and of the shift.
 fn squares(of: &Vector6<f64>) -> Vector2<f64> {
     let (turn, shift) = parts(of);
@@ -68,10 +76,7 @@ impl<'a> Problem<'a> {
     /// One Newton iteration.
     fn newton(&mut self, longest: f64) -> Update {
         let (stepper, work) = (self.stepper, &mut *self.work);
-        for body in 0..stepper.bodies() {
-            let (residual, matrix) = stepper.newton_system(body, &work.now[body], &work.a[body], &work.half[body]);
-            (work.residuals[body], work.matrices[body]) = (residual, matrix);
-        }
+        stepper.set_newton(&work.now, &work.a, &work.half, &mut work.coefficients);
         self.set_next();
         let (stepper, work) = (self.stepper, &mut *self.work);
         // Gaps are halved: the unknowns are half the coordinates, so a shift is twice its unknown.
@@ -80,7 +85,7 @@ impl<'a> Problem<'a> {
             *turn = work.places[k].attitude * tangent * 0.5;
         }
         work.equations.set_after(stepper.joints(), &stepper.tree, &work.next_places, &work.turns);
-        work.equations.factorise(&stepper.tree, &work.matrices);
+        work.equations.factorise(&stepper.tree, &work.coefficients);
         self.met = work.equations.redundant(&stepper.tree);
         self.update(longest)
     }
@@ -88,9 +93,7 @@ impl<'a> Problem<'a> {
     /// One simplified iteration, with the last Jacobian.
     fn simplified(&mut self) -> Update {
         let (stepper, work) = (self.stepper, &mut *self.work);
-        for body in 0..stepper.bodies() {
-            work.residuals[body] = stepper.newton_residual(body, &work.now[body], &work.a[body], &work.half[body]);
-        }
+        stepper.set_residuals(&work.now, &work.a, &work.half, &mut work.coefficients.vectors);
         self.set_next();
         self.update(f64::INFINITY)
     }
@@ -98,9 +101,10 @@ impl<'a> Problem<'a> {
     /// Solves for the update and applies it. If a body would turn by more than `longest`, all updates are scaled down.
     fn update(&mut self, longest: f64) -> Update {
         let (stepper, weights) = (self.stepper, self.weights());
-        let Workspace { equations, residuals, next_places, half, .. } = &mut *self.work;
+        let Workspace { equations, coefficients, next_places, half, .. } = &mut *self.work;
         let joints = stepper.joints();
-        let opposed = equations.solve(&stepper.tree, residuals, |joint| gap(&joints[joint], next_places) * 0.5);
+        let opposed =
+            equations.solve(&stepper.tree, &coefficients.vectors, |joint| gap(&joints[joint], next_places) * 0.5);
         let (mut update, mut largest, mut size) = (0.0, 0.0_f64, 0.0);
         for part in &equations.unknowns.bodies {
             update += squares(part).dot(&weights);
@@ -121,17 +125,21 @@ impl<'a> Problem<'a> {
 
     /// The number of iterations, and whether they converged near the identity with all determinants positive.
     fn attempt(&mut self, most: u32, longest: f64) -> (u32, bool) {
-        let mut made = 0;
+        // The length of the last update, if it wasn't shortened.
+        let (mut made, mut before) = (0, f64::INFINITY);
         for _ in 0..most {
             made += 1;
             let Update { length: update, size, largest, rounded } = self.newton(longest);
             if !size.is_finite() {
                 return (made, false);
             }
-            if update <= (size * (f64::EPSILON * SETTLED)).max(rounded) {
+            let is_rounding = before.max(update) <= size * ROUNDING.0 && update >= before * ROUNDING.1;
+            if update <= (size * (f64::EPSILON * SETTLED)).max(rounded) || is_rounding {
                 return (made, self.is_wanted());
             }
-            if largest <= longest * longest && may_suffice(update, size) {
+            let is_whole = largest <= longest * longest;
+            before = if is_whole { update } else { f64::INFINITY };
+            if is_whole && may_suffice(update, size) {
                 let second = self.simplified();
                 made += 1;
                 if second.length <= second.rounded || has_sufficed(update, second.length, second.size) {

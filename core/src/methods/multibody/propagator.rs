@@ -25,8 +25,8 @@ impl MultibodyStepper {
             before.clear();
             before.extend_from_slice(state);
             let mut iterations = 0;
-            let made = (0..steps).try_for_each(|_| {
-                iterations += u64::from(self.step_in(state, work, None)?.iterations);
+            let made = (0..steps).try_for_each(|step| {
+                iterations += u64::from(self.step_in(state, work, None, step > 0)?.iterations);
                 Ok(())
             });
             if made.is_err() {
@@ -44,7 +44,7 @@ impl MultibodyStepper {
     /// [`StepError`] that names a body or a joint, see the type's contract.
     pub fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
         self.check(state)?;
-        with_workspace(|work| self.step_in(state, work, None))
+        with_workspace(|work| self.step_in(state, work, None, false))
     }
 }
 
@@ -102,9 +102,11 @@ impl Propagator for MultibodyStepper {
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
         let is_state = self.check(state).is_ok();
+        let velocities =
+            if is_state { self.velocities_of(&self.attitudes(state), &self.momenta(state)) } else { Vec::new() };
         for (body, components) in velocity.chunks_exact_mut(6).enumerate() {
-            let of_body = (is_state && body < self.bodies()).then(|| Self::velocity(self, state, body));
-            components.copy_from_slice(of_body.unwrap_or_else(|| Vector6::repeat(f64::NAN)).as_slice());
+            let of_body = velocities.get(body).copied().unwrap_or_else(|| Vector6::repeat(f64::NAN));
+            components.copy_from_slice(of_body.as_slice());
         }
     }
 

@@ -35,7 +35,7 @@ impl MultibodyStepper {
     pub fn start(&self, attitudes: &[Body], velocities: &[Vector6<f64>]) -> Result<Box<[f64]>, SetupError> {
         check_velocities(velocities, self.bodies())?;
         self.check_attitudes(attitudes)?;
-        self.start_with_momentum(attitudes, &self.momenta(attitudes, velocities))
+        self.start_with_momentum(attitudes, &self.momenta_of(attitudes, velocities))
     }
 
     /// A state from the configurations of all bodies and their momenta, kg m²/s in the axes of the body and kg m/s in
@@ -51,6 +51,7 @@ impl MultibodyStepper {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
         self.check_inertias(|body| attitudes[body])?;
+        self.check_coupled_inertia(attitudes)?;
         let mut state = self.offsets.zeros();
         self.offsets.write(&mut state, attitudes, momenta);
         self.begin(&mut state);
@@ -73,29 +74,19 @@ impl MultibodyStepper {
         check_velocities(velocities, self.bodies())?;
         self.check_attitudes(attitudes)?;
         let attitudes = self.closed(attitudes)?;
-        let mut momenta = self.momenta(&attitudes, velocities);
+        let mut momenta = self.momenta_of(&attitudes, velocities);
         let places: Vec<_> = attitudes.iter().map(place).collect();
         let mut equations = self.equations();
-        let mut matrices = alloc::vec![nalgebra::Matrix6::zeros(); self.bodies()];
+        let mut coefficients = self.limit(&attitudes);
         let mut reactions = momenta.clone();
         // The second projection removes the rounding errors of the first, for bodies of very different masses.
         for _ in 0..2 {
-            let mut residuals = momenta.clone();
-            self.set_impulses(&mut equations, &attitudes, &places, (&mut residuals, &mut matrices))
+            self.set_impulses(&mut equations, &attitudes, &places, (&momenta, &mut coefficients))
                 .map_err(|(joint, pivot)| SetupError::RedundantJoint { joint, pivot })?;
             equations.reactions(&self.tree, &mut reactions);
             momenta.iter_mut().zip(&reactions).for_each(|(momentum, taken)| *momentum -= taken);
         }
         self.start_with_momentum(&attitudes, &momenta)
-    }
-
-    /// The momenta of these velocities.
-    fn momenta(&self, attitudes: &[Body], velocities: &[Vector6<f64>]) -> Vec<Vector6<f64>> {
-        let of_body = |(body, velocity): (usize, &Vector6<f64>)| {
-            let (_, bias, inertia) = self.at_rest(body, &attitudes[body]);
-            inertia * velocity + bias
-        };
-        velocities.iter().enumerate().map(of_body).collect()
     }
 
     fn check_attitudes(&self, attitudes: &[Body]) -> Result<(), SetupError> {
@@ -114,8 +105,7 @@ impl MultibodyStepper {
     /// The equations of velocities at these places.
     fn of_velocities(&self, bodies: &[Body], places: &[Place]) -> Equations {
         let mut equations = self.equations();
-        let inertias: Vec<_> = bodies.iter().enumerate().map(|(body, now)| self.at_rest(body, now).2).collect();
-        equations.set_velocities(self.joints(), &self.tree, places, &inertias);
+        equations.set_velocities(self.joints(), &self.tree, places, &self.limit(bodies));
         equations
     }
 
@@ -130,8 +120,7 @@ impl MultibodyStepper {
             return Err(SetupError::OffConstraint { joint, by });
         }
         self.check_redundance(&equations)?;
-        let of_body = |(body, momentum)| self.velocity_of(body, &bodies[body], momentum);
-        let velocities: Vec<_> = momenta.iter().enumerate().map(of_body).collect();
+        let velocities = self.velocities_of(bodies, momenta);
         // The turning rate that rounding errors of attitudes produce in a step at rest.
         let least = if self.h == 0.0 { 0.0 } else { CLOSED / (PRINTED * self.h.abs()) };
         let Widest { joint, by, relative } = equations.widest_parting(&self.tree, &velocities, &self.lengths, least);

@@ -99,15 +99,27 @@ impl Offsets {
         let (is_first, all) = (self.steps(state) == 0.0, 6 * self.bodies);
         let memory = &mut state[self.memory()];
         let known = memory.last().map_or(0, |known| (*known as usize).min(DIFFERENCES + 1));
-        for (k, &half) in halves.iter().flat_map(|half| half.iter()).enumerate() {
-            let (mut difference, mut guess) = (half - memory[k], half);
-            for number in 0..known.min(DIFFERENCES) {
-                guess += difference;
-                let before = core::mem::replace(&mut memory[all * (2 + number) + k], difference);
-                difference -= before;
+        let (lasts, rest) = memory.split_at_mut(all);
+        let (guesses, differences) = rest.split_at_mut(all);
+        let entries = || halves.iter().flat_map(|half| half.iter());
+        for ((last, guess), &half) in lasts.iter_mut().zip(&mut *guesses).zip(entries()) {
+            // The first difference, until the others are known.
+            *last = half - *last;
+            *guess = half;
+        }
+        let is_guessed = !(is_far || is_first);
+        for number in differences.chunks_exact_mut(all).take(known.min(DIFFERENCES)) {
+            for ((difference, guess), before) in lasts.iter_mut().zip(&mut *guesses).zip(number) {
+                if is_guessed {
+                    *guess += *difference;
+                }
+                let now = *difference;
+                *difference -= *before;
+                *before = now;
             }
-            memory[k] = half;
-            memory[all + k] = if is_far || is_first { half } else { guess };
+        }
+        for (last, &half) in lasts.iter_mut().zip(entries()) {
+            *last = half;
         }
         if let Some(last) = memory.last_mut() {
             *last = (known + 1).min(DIFFERENCES + 1) as f64;

@@ -3,6 +3,7 @@
 use nalgebra::Vector6;
 
 use super::constraint::Place;
+use super::couplings::Coefficients;
 use super::equations::Equations;
 use super::newton::Problem;
 use super::state::body_at;
@@ -19,23 +20,28 @@ use crate::motion::StepReport;
 const STEPS_BETWEEN_CHECKS: f64 = 64.0;
 
 impl MultibodyStepper {
-    /// Makes one step of a slice that is a state; on an error it is unchanged. Adds the joints' forces.
+    /// Makes one step of a slice that is a state; on an error it is unchanged. Adds the joints' forces. Slopes at the state
+    /// are known if the workspace has just made the step that ends there, with nothing in between.
     pub(super) fn step_in(
         &self,
         state: &mut [f64],
         work: &mut Workspace,
         forces: Option<&mut [Vector6<f64>]>,
+        are_slopes_known: bool,
     ) -> Result<StepReport, StepError> {
         let (offsets, steps) = (self.offsets, self.offsets.steps(state));
         if self.h == 0.0 {
             offsets.set_steps(state, steps + 1.0);
             return Ok(StepReport::of(0));
         }
-        work.fit(self.bodies());
+        work.fit(self.bodies(), self.tree.couplings.len());
         work.equations.fit(self.joints(), &self.tree);
-        self.load(state, work, steps)?;
+        let is_due = steps % STEPS_BETWEEN_CHECKS == 0.0;
+        self.load(state, work, is_due)?;
         self.kick_before(work);
-        work.equations.set_before(self.joints(), &self.tree, &work.places);
+        if is_due || !are_slopes_known {
+            work.equations.set_before(self.joints(), &self.tree, &work.places);
+        }
         let mut problem = Problem::new(self, work);
         let iterations = problem.solve()?;
         problem.set_next();
@@ -63,8 +69,7 @@ impl MultibodyStepper {
 
     /// Reads a state. Attitudes are projected onto the rotations if that is due: before the step, so that joints are
     /// closed after it.
-    fn load(&self, state: &[f64], work: &mut Workspace, steps: f64) -> Result<(), StepError> {
-        let is_due = steps % STEPS_BETWEEN_CHECKS == 0.0;
+    fn load(&self, state: &[f64], work: &mut Workspace, is_due: bool) -> Result<(), StepError> {
         for body in 0..self.bodies() {
             let now = body_at(state, body);
             let restored = if is_due { now.restored(0.0) } else { None };
@@ -130,12 +135,12 @@ impl MultibodyStepper {
     /// Projects the momenta after the changes in `a` onto those whose velocities satisfy the constraints at the next
     /// configuration. If the impulses aren't unique, the joint that is redundant, and its pivot.
     fn project(&self, work: &mut Workspace) -> Result<(), (usize, f64)> {
-        let Workspace { next, next_places, momenta, a, residuals, matrices, reactions, equations, .. } = work;
+        let Workspace { next, next_places, momenta, a, coefficients, reactions, equations, changed, .. } = work;
         for body in 0..self.bodies() {
             next_places[body] = place(&next[body]);
-            residuals[body] = momenta[body] + a[body];
+            changed[body] = momenta[body] + a[body];
         }
-        self.set_impulses(equations, next, next_places, (residuals, matrices))?;
+        self.set_impulses(equations, next, next_places, (changed, coefficients))?;
         equations.reactions(&self.tree, reactions);
         for body in 0..self.bodies() {
             a[body] -= reactions[body];
@@ -145,24 +150,23 @@ impl MultibodyStepper {
     }
 
     /// Solves for the impulses of the joints that project these momenta onto those whose velocities satisfy the
-    /// constraints, at the least distance in the metric of the inertia; the momenta are overwritten by residuals.
+    /// constraints, at the least distance in the metric of the inertia.
     pub(super) fn set_impulses(
         &self,
         equations: &mut Equations,
         bodies: &[Body],
         places: &[Place],
-        (momenta, inertias): (&mut [Vector6<f64>], &mut [nalgebra::Matrix6<f64>]),
+        (momenta, coefficients): (&[Vector6<f64>], &mut Coefficients),
     ) -> Result<(), (usize, f64)> {
-        for (body, momentum) in momenta.iter_mut().enumerate() {
-            let (_, bias, inertia) = self.at_rest(body, &bodies[body]);
-            inertias[body] = inertia;
-            *momentum = bias - *momentum;
+        self.set_limit(bodies, coefficients);
+        for (bias, momentum) in coefficients.vectors.iter_mut().zip(momenta) {
+            *bias -= momentum;
         }
-        equations.set_velocities(self.joints(), &self.tree, places, inertias);
+        equations.set_velocities(self.joints(), &self.tree, places, coefficients);
         if let Some(redundant) = equations.redundant(&self.tree) {
             return Err(redundant);
         }
-        equations.solve(&self.tree, momenta, |_| Vector6::zeros());
+        equations.solve(&self.tree, &coefficients.vectors, |_| Vector6::zeros());
         Ok(())
     }
 
@@ -184,7 +188,7 @@ impl MultibodyStepper {
             next.extend_from_slice(state);
             let made = self
                 .push(&mut next, work, force)
-                .and_then(|()| self.step_in(&mut next, work, None))
+                .and_then(|()| self.step_in(&mut next, work, None, false))
                 .and_then(|report| self.push(&mut next, work, force).map(|()| report));
             if made.is_ok() {
                 state.copy_from_slice(&next);
@@ -196,7 +200,7 @@ impl MultibodyStepper {
 
     /// Adds half of a step's impulse of these forces.
     fn push(&self, state: &mut [f64], work: &mut Workspace, force: &[Vector6<f64>]) -> Result<(), StepError> {
-        work.fit(self.bodies());
+        work.fit(self.bodies(), self.tree.couplings.len());
         work.equations.fit(self.joints(), &self.tree);
         for (body, force) in force.iter().enumerate() {
             work.next[body] = body_at(state, body);

@@ -9,6 +9,7 @@ use nalgebra::{Matrix6, Vector6};
 roots!();
 
 use super::constraint::Place;
+use super::couplings::{Coupling, couplings};
 use super::equations::gap;
 use super::graph::{Joined, Tree};
 use super::state::{Offsets, body_at, layout};
@@ -17,9 +18,8 @@ use super::terms::{BodyTerm, space};
 use super::workspace::with_workspace;
 use super::{Body, place};
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{SceneVisitor, check_inertia};
+use crate::mechanics::SceneVisitor;
 use crate::motion::Layout;
-use crate::numbers::{BlockDiagonal, Coordinates as _, Pattern};
 
 /// The stepper of a [`Multibody`] system: a [`Propagator`](crate::motion::Propagator) whose states are slices of numbers.
 ///
@@ -46,8 +46,12 @@ pub struct MultibodyStepper {
     /// The system, its terms in the order of their bodies.
     pub(super) system: Multibody,
     /// The terms of each body.
-    ranges: Vec<Range<usize>>,
+    pub(super) ranges: Vec<Range<usize>>,
     pub(super) tree: Tree,
+    /// The terms that couple bodies within a step.
+    pub(super) couplings: Vec<Coupling>,
+    /// The bodies without joints: the order in which inertias are eliminated.
+    pub(super) free: Tree,
     /// The radius of gyration of each body, m, by which rotations are compared with translations.
     pub(super) lengths: Vec<f64>,
     pub(super) layout: Layout,
@@ -94,11 +98,14 @@ impl MultibodyStepper {
         }
         // Stable, so that the terms of a body are added in their own order.
         system.terms.sort_by_key(|(body, _)| *body);
-        let tree = Tree::of(&system.joints, system.bodies)?;
+        let pairs = system.pairs.iter().map(|(bodies, term)| (bodies, term.has_unknown()));
+        let (couplings, coupled) = couplings(pairs);
+        let tree = Tree::of(&system.joints, system.bodies, coupled)?;
+        let free = tree.without_joints();
         let place = |body: usize| system.terms.partition_point(|(of, _)| *of < body);
         let ranges = (0..system.bodies).map(|body| place(body)..place(body + 1)).collect();
         let (layout, offsets) = (layout(system.bodies), Offsets::of(system.bodies));
-        let mut stepper = Self { h, system, ranges, tree, lengths: Vec::new(), layout, offsets };
+        let mut stepper = Self { h, system, ranges, tree, couplings, free, lengths: Vec::new(), layout, offsets };
         stepper.check_inertias(|_| space())?;
         stepper.lengths = (0..stepper.bodies()).map(|body| length(&stepper.at_rest(body, &space()).2)).collect();
         // Some constants aren't finite for any step.
@@ -107,29 +114,11 @@ impl MultibodyStepper {
         }
         if h != 0.0 {
             stepper.system = stepper.system.refolded(h);
-            let zero = Vector6::zeros();
-            let of_body = |body| stepper.newton_system(body, &space(), &zero, &zero).1.trace();
-            let trace: f64 = (0..stepper.bodies()).map(of_body).sum();
-            if !(trace / h).is_finite() {
+            if !(stepper.trace() / h).is_finite() {
                 return Err(SetupError::InvalidStep { step: h });
             }
         }
         Ok(stepper)
-    }
-
-    /// Checks the inertias of the bodies at these configurations.
-    pub(super) fn check_inertias(&self, at: impl Fn(usize) -> Body) -> Result<(), SetupError> {
-        (0..self.bodies()).try_for_each(|body| {
-            let inertia = BlockDiagonal([self.at_rest(body, &at(body)).2]);
-            let of_body = (self.bodies() > 1).then_some(body);
-            check_inertia::<[Body; 1]>(&inertia).map_err(|error| match error {
-                SetupError::NegativeKinetic { pivot, .. } => SetupError::NegativeKinetic { pivot, body: of_body },
-                SetupError::SingularKinetic { determinant, .. } => {
-                    SetupError::SingularKinetic { determinant, body: of_body }
-                }
-                error => error,
-            })
-        })
     }
 
     /// The number of bodies.
@@ -140,10 +129,6 @@ impl MultibodyStepper {
 
     pub(super) fn joints(&self) -> &[Joined] {
         &self.system.joints
-    }
-
-    fn terms(&self, body: usize) -> impl Iterator<Item = &dyn BodyTerm> {
-        self.system.terms[self.ranges[body].clone()].iter().map(|(_, term)| &**term)
     }
 
     /// The declaration of each term and all derived equations, as text.
@@ -185,66 +170,14 @@ impl MultibodyStepper {
         self.h
     }
 
-    /// The Lagrangian, the momentum and the inertia of a body's limit at rest.
-    pub(super) fn at_rest(&self, body: usize, now: &Body) -> (f64, Vector6<f64>, Matrix6<f64>) {
-        let mut sum = (0.0, Vector6::zeros(), Matrix6::zeros());
-        for term in self.terms(body) {
-            let (l, momentum, inertia) = term.at_rest(now);
-            sum = (sum.0 + l, sum.1 + momentum, sum.2 + inertia);
-        }
-        sum
-    }
-
-    /// Residual and Jacobian of a body's momentum equation.
-    pub(super) fn newton_system(
-        &self,
-        body: usize,
-        now: &Body,
-        a: &Vector6<f64>,
-        half: &Vector6<f64>,
-    ) -> (Vector6<f64>, Matrix6<f64>) {
-        let (mut sum, mut a) = ((Vector6::zeros(), Matrix6::zeros()), *a);
-        for term in self.terms(body).filter(|term| term.has_unknown()) {
-            let (residual, matrix) = term.newton_system(now, &a, half);
-            sum = (sum.0 + residual, sum.1 + matrix);
-            a = term.remainder(&a);
-        }
-        sum
-    }
-
-    /// The residual of a body's momentum equation.
-    pub(super) fn newton_residual(
-        &self,
-        body: usize,
-        now: &Body,
-        a: &Vector6<f64>,
-        half: &Vector6<f64>,
-    ) -> Vector6<f64> {
-        let (mut sum, mut a) = (Vector6::zeros(), *a);
-        for term in self.terms(body).filter(|term| term.has_unknown()) {
-            sum += term.newton_residual(now, &a, half);
-            a = term.remainder(&a);
-        }
-        sum
-    }
-
-    /// The velocity of a momentum.
-    pub(super) fn velocity_of(&self, body: usize, now: &Body, momentum: &Vector6<f64>) -> Vector6<f64> {
-        let (_, bias, inertia) = self.at_rest(body, now);
-        let factors = Vector6::factorise_apart(&inertia, Pattern::WHOLE).0;
-        Vector6::solve_apart(&factors, Pattern::WHOLE, &(momentum - bias))
-    }
-
-    /// Writes approximately half the coordinates of the increments at these momenta.
-    pub(super) fn estimate(&self, bodies: &[Body], momenta: &[Vector6<f64>], halves: &mut [Vector6<f64>]) {
-        for (body, half) in halves.iter_mut().enumerate() {
-            *half = self.velocity_of(body, &bodies[body], &momenta[body]) * (self.h * 0.5);
-        }
-    }
-
     /// The configurations of a state.
     pub(super) fn attitudes(&self, state: &[f64]) -> Vec<Body> {
         (0..self.bodies()).map(|body| body_at(state, body)).collect()
+    }
+
+    /// The momenta of a state.
+    pub(super) fn momenta(&self, state: &[f64]) -> Vec<Vector6<f64>> {
+        (0..self.bodies()).map(|body| self.offsets.momentum(state, body)).collect()
     }
 
     /// The configuration of a body, as attitude and position.
@@ -274,6 +207,9 @@ impl MultibodyStepper {
     /// If there is no such body, or if the slice is no state of this [`layout`](crate::motion::Propagator::layout).
     #[must_use]
     pub fn velocity(&self, state: &[f64], body: usize) -> Vector6<f64> {
+        if !self.couplings.is_empty() {
+            return self.velocities_of(&self.attitudes(state), &self.momenta(state))[body];
+        }
         self.velocity_of(body, &self.attitude(state, body), &self.momentum(state, body))
     }
 
@@ -283,23 +219,7 @@ impl MultibodyStepper {
         if self.check(state).is_err() {
             return f64::NAN;
         }
-        let (mut kinetic, mut l) = (0.0, 0.0);
-        for body in 0..self.bodies() {
-            let now = self.attitude(state, body);
-            let velocity = self.velocity_of(body, &now, &self.momentum(state, body));
-            let (of_body, _, inertia) = self.at_rest(body, &now);
-            kinetic += velocity.dot(&(inertia * velocity));
-            l += of_body;
-        }
-        let space = space();
-        let end = |body: Option<usize>| body.map_or(space, |body| self.attitude(state, body));
-        let of_pair = |bodies: &[Option<usize>; 2]| bodies.map(end);
-        let between = self.system.pairs.iter().map(|(bodies, term)| {
-            let [one, other] = of_pair(bodies);
-            term.potential([&one, &other])
-        });
-        let between = between.fold(0.0, |sum, potential| sum + potential);
-        kinetic * 0.5 + (between - l)
+        self.energy_of(&self.attitudes(state), &self.momenta(state))
     }
 
     /// The widest gap of a joint, m; for a [`PinJoint`](crate::methods::PinJoint) the norm includes the cosines of its
@@ -405,7 +325,7 @@ impl MultibodyStepper {
             return Ok(forces);
         }
         let mut state = state.to_vec();
-        with_workspace(|work| self.step_in(&mut state, work, Some(&mut forces)))?;
+        with_workspace(|work| self.step_in(&mut state, work, Some(&mut forces), false))?;
         Ok(forces)
     }
 
@@ -426,7 +346,7 @@ impl MultibodyStepper {
     /// Sets the memory of a state to that of a new start.
     pub(super) fn begin(&self, state: &mut [f64]) {
         let bodies = self.attitudes(state);
-        let momenta: Vec<_> = (0..self.bodies()).map(|body| self.momentum(state, body)).collect();
+        let momenta = self.momenta(state);
         let mut halves = momenta.clone();
         self.estimate(&bodies, &momenta, &mut halves);
         self.offsets.begin(state, &halves);

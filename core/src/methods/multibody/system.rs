@@ -8,9 +8,10 @@ use super::Body;
 use super::constraint::Constraint;
 use super::functions::Erased;
 use super::graph::Joined;
+use super::part::BodyPart;
 use super::terms::{BodyTerm, PairTerm, of_body, of_pair};
 use crate::error::SetupError;
-use crate::groups::{CayleyRetraction, R3, SO3};
+use crate::groups::{CayleyRetraction, Pair};
 use crate::mechanics::Effect;
 
 /// A system of rigid bodies, with terms on them and between them, and with joints. Bodies are counted from zero.
@@ -94,7 +95,7 @@ pub struct Multibody {
 }
 
 /// A term between two bodies; `None` is space.
-type PlacedPair = ([Option<usize>; 2], Arc<dyn PairTerm>);
+pub(super) type PlacedPair = ([Option<usize>; 2], Arc<dyn PairTerm>);
 
 impl Multibody {
     /// A system without bodies.
@@ -103,10 +104,11 @@ impl Multibody {
         Self::default()
     }
 
-    /// Adds a body with its kinetic term; returns its number.
+    /// Adds a body with its kinetic term; returns its number. The term is on the group `(SO3, R3)` or on a part of it, and
+    /// [`on`](Self::on) adds the others.
     pub fn body<E>(&mut self, term: E) -> usize
     where
-        E: Effect<Scalar = f64, Group = (SO3, R3), Retraction = CayleyRetraction> + Send + Sync + 'static,
+        E: Effect<Scalar = f64, Group: BodyPart, Retraction = CayleyRetraction> + Send + Sync + 'static,
         E::Constants: Send + Sync,
         E::Advected: Send + Sync,
     {
@@ -116,20 +118,80 @@ impl Multibody {
         body
     }
 
-    /// Adds a further term to a body.
+    /// Adds a further term to a body, or to its rotation alone, as the [`effects`](crate::effects) of the library are.
     pub fn on<E>(&mut self, body: usize, term: E)
     where
-        E: Effect<Scalar = f64, Group = (SO3, R3), Retraction = CayleyRetraction> + Send + Sync + 'static,
+        E: Effect<Scalar = f64, Group: BodyPart, Retraction = CayleyRetraction> + Send + Sync + 'static,
         E::Constants: Send + Sync,
         E::Advected: Send + Sync,
     {
         self.terms.push((body, of_body(term)));
     }
 
-    /// Adds a potential between two bodies, or between space, `None`, and a body. It is a term of the ends of a step.
+    /// Adds a term between two bodies, or between space, `None`, and a body: a potential, a kinetic energy, or a force by
+    /// its virtual work. The term is declared on two bodies, or on parts of both ([`BodyPart`]): `group(F_1 = SO3, F_2 = SO3)`
+    /// for one that depends on their attitudes alone.
+    ///
+    /// A potential of the ends of a step adds kicks. Any other term couples the equations of its bodies within the step,
+    /// which are solved together: a step isn't bounded by the strength of friction, nor by a stiff potential of the middle of
+    /// a step.
+    ///
+    /// # Examples
+    ///
+    /// A double pendulum with friction in its second joint: the torque is `c` times the relative angular velocity, half of
+    /// its impulse at either end of a step. Its work is negative at any strength.
+    ///
+    /// ```
+    /// use liestep::groups::R3;
+    /// use liestep::methods::{BallJoint, Multibody};
+    /// use liestep::{NonstandardInertia, SO3, force, lagrangian};
+    /// use nalgebra::{Vector3, Vector6};
+    ///
+    /// #[force(
+    ///     group(F_1 = SO3, F_2 = SO3),
+    ///     advected(Q = F_2.seen_from(F_1)),
+    ///     displacement(eta_1, eta_2),
+    ///     work = {
+    ///         let turn = Q * vee(F_2) - vee(F_1);
+    ///         -0.5 * c * (turn.dot(&(Q * eta_2 - eta_1)) + turn.dot(&(Q * (F_2 * eta_2_next) - F_1 * eta_1_next)))
+    ///     },
+    /// )]
+    /// struct Friction {
+    ///     c: f64, // N m s
+    /// }
+    ///
+    /// /// A body and its weight.
+    /// #[lagrangian(
+    ///     group(F = SO3, d = R3),
+    ///     advected(x = d.seen_from(space)),
+    ///     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
+    ///         - 0.5 * h * m * g * (x + x + d)[2],
+    /// )]
+    /// struct Rod {
+    ///     J_d: NonstandardInertia,
+    ///     m: f64,
+    ///     g: f64,
+    /// }
+    ///
+    /// let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0 / 12.0, 1e-3, 1e-3))?;
+    /// let (left, right) = (Vector3::x() * -0.5, Vector3::x() * 0.5);
+    /// let mut pendulum = Multibody::new();
+    /// let upper = pendulum.body(Rod { J_d, m: 1.0, g: 9.81 });
+    /// let lower = pendulum.body(Rod { J_d, m: 1.0, g: 9.81 });
+    /// pendulum.join(BallJoint { above: Vector3::zeros(), below: left }, None, upper);
+    /// pendulum.join(BallJoint { above: right, below: left }, Some(upper), lower);
+    /// pendulum.between([Some(upper), Some(lower)], Friction { c: 50.0 });
+    /// let stepper = pendulum.stepper(0.01)?;
+    /// let start = [0.5, 1.5].map(|x| (SO3::identity(), R3::from(Vector3::x() * x)));
+    /// let mut state = stepper.start(&start, &[Vector6::zeros(); 2])?;
+    /// let energy = stepper.energy(&state);
+    /// stepper.run(&mut state, 1000)?;
+    /// assert!(stepper.energy(&state) < energy - 0.01);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn between<E>(&mut self, bodies: [Option<usize>; 2], term: E)
     where
-        E: Effect<Scalar = f64, Group = (SO3, R3, SO3, R3), Retraction = CayleyRetraction> + Send + Sync + 'static,
+        E: Effect<Scalar = f64, Group: Pair<Body: BodyPart>, Retraction = CayleyRetraction> + Send + Sync + 'static,
         E::Constants: Send + Sync,
         E::Advected: Send + Sync,
     {

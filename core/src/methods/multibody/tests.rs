@@ -2,12 +2,16 @@
 
 use alloc::vec::Vec;
 
-use liestep::lagrangian;
-use nalgebra::{Vector3, Vector6};
+use liestep::{force, lagrangian};
+use nalgebra::{DMatrix, DVector, Matrix3, Matrix6, SVector, Vector3, Vector6};
 
-use super::{Body, Multibody};
+use super::couplings::Coefficients;
+use super::equations::Equations;
+use super::{Body, Multibody, MultibodyStepper};
+use crate::effects::Drag;
 use crate::error::{SetupError, StepError};
 use crate::groups::{R3, SO3};
+use crate::laws::samples::{Random, derivative};
 use crate::mechanics::NonstandardInertia;
 use crate::methods::BallJoint;
 use crate::motion::Propagator;
@@ -190,4 +194,222 @@ fn steps_have_the_same_bits_on_every_thread() {
         assert_eq!(states, alone);
     }
     assert!(systems[1].0.attitude(&alone[1], 0).0 != SO3::identity());
+}
+
+/// A term without a physical meaning that couples turns and shifts of two bodies within a step.
+#[force(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(Q = F_2.seen_from(F_1), r = d_2.seen_from(d_1), R_1 = F_1.seen_from(space)),
+    displacement(eta_1, s_1, eta_2, s_2),
+    work = -c * (Q * vee(F_2) - vee(F_1)).dot(&(Q * eta_2 - eta_1))
+        - h * c * (r + d_2 * 2.0).dot(&(R_1 * (F_1 * eta_1))) - c * (d_2 - d_1).dot(&(s_2_next - s_1 * 2.0))
+        + c * (R_1 * (Q * vee(F_2))).dot(&s_2) - 0.5 * c * (R_1 * (F_1 * eta_1_next)).dot(&d_2),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Rubbing {
+    c: f64,
+}
+
+/// A kinetic coupling of rotations alone: light balls on bars between points of two bodies.
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(Q = F_2.seen_from(F_1)),
+    l_d = {
+        let apart = (F_1 - I) * A - Q * (F_2 - I) * B;
+        (apart * apart.transpose()).trace() / (2.0 * h)
+            - 0.5 * h * k * (a.dot(&(Q * a)) + (F_1 * a).dot(&(Q * F_2 * a)))
+    },
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Bars {
+    A: Matrix3<f64>,
+    B: Matrix3<f64>,
+    a: Vector3<f64>,
+    k: f64,
+}
+
+impl Bars {
+    const OURS: Self = Self {
+        A: Matrix3::new(0.1, 0.2, 0.05, 0.0, 0.1, -0.1, 0.2, 0.0, 0.1),
+        B: Matrix3::new(-0.1, 0.1, 0.2, 0.1, 0.05, 0.0, 0.0, 0.2, 0.1),
+        a: Vector3::new(0.1, 0.2, 0.05),
+        k: 3.0,
+    };
+}
+
+/// A term that is linear in the velocities of both bodies, and depends on their attitudes.
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(Q = F_2.seen_from(F_1)),
+    l_d = c * (vee(F_1).dot(&(Q * e)) + 2.0 * vee(F_2).dot(&(Q.transpose() * e))),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Magnet {
+    c: f64,
+    e: Vector3<f64>,
+}
+
+/// A damper between a body and a point of space or of another body.
+#[force(
+    group(d_1 = R3, d_2 = R3),
+    displacement(s_1, s_2),
+    work = -0.5 * c * (d_2 - d_1).dot(&(s_2 + s_2_next - s_1 - s_1_next)),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Dashpot {
+    c: f64,
+}
+
+/// A chain of four with terms between neighbours, across joints, to space and between the same bodies in both orders.
+fn coupled(h: f64) -> MultibodyStepper {
+    let mut system = Multibody::new();
+    for k in 0..4 {
+        system.body(rod(1.0 + 0.3 * f64::from(u8::try_from(k).unwrap()), 0.4));
+        match usize::checked_sub(k, 1) {
+            None => system.join(ball(Vector3::zeros(), LEFT), None, 0),
+            Some(before) => system.join(ball(RIGHT, LEFT), Some(before), k),
+        }
+    }
+    system.between([Some(0), Some(1)], Rubbing { c: 0.7 });
+    system.between([Some(2), Some(1)], Rubbing { c: 0.4 });
+    system.between([Some(1), Some(2)], Bars::OURS);
+    system.between([Some(0), Some(3)], Bars::OURS);
+    system.between([None, Some(3)], Rubbing { c: 0.3 });
+    system.between([Some(3), Some(2)], Magnet { c: 0.6, e: Vector3::new(0.3, -0.2, 0.5) });
+    system.between([Some(2), None], Dashpot { c: 0.2 });
+    system.on(2, Drag { c: 0.1, J: rod(1.0, 0.0).J_d.to_inertia() });
+    system.stepper(h).unwrap()
+}
+
+/// Configurations, and half increments, of four bodies.
+fn somewhere(seed: u32) -> ([Body; 4], [Vector6<f64>; 4], [Vector6<f64>; 4]) {
+    let mut random = Random::new(seed.into());
+    let bodies = [(); 4].map(|()| {
+        let (turn, shift): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
+        (SO3::exp(turn), R3::from(shift))
+    });
+    (bodies, [(); 4].map(|()| random.sample::<Vector6<f64>>() * 0.3), [(); 4].map(|()| random.sample()))
+}
+
+/// The Newton matrix of the bodies as one matrix.
+fn assembled(stepper: &MultibodyStepper, coefficients: &Coefficients) -> DMatrix<f64> {
+    let mut all = DMatrix::zeros(24, 24);
+    for (body, matrix) in coefficients.matrices.iter().enumerate() {
+        all.view_mut((6 * body, 6 * body), (6, 6)).copy_from(matrix);
+    }
+    for (&[one, other], [upper, lower]) in stepper.tree.couplings.iter().zip(&coefficients.blocks) {
+        all.view_mut((6 * one, 6 * other), (6, 6)).copy_from(upper);
+        all.view_mut((6 * other, 6 * one), (6, 6)).copy_from(lower);
+    }
+    all
+}
+
+/// The columns of the Newton matrix are the differences of the residual, in blocks between bodies, too.
+#[test]
+fn the_newton_matrix_is_the_derivative_of_the_residual() {
+    let stepper = coupled(0.1);
+    let mut coefficients = Coefficients::default();
+    coefficients.fit(4, stepper.tree.couplings.len());
+    for seed in 1..4 {
+        let (now, half, a) = somewhere(seed);
+        stepper.set_newton(&now, &a, &half, &mut coefficients);
+        let matrix = assembled(&stepper, &coefficients);
+        let mut residuals = coefficients.vectors.clone();
+        stepper.set_residuals(&now, &a, &half, &mut residuals);
+        assert!(residuals.iter().zip(&coefficients.vectors).all(|(a, b)| (a - b).amax() < 1e-14));
+        for column in 0..24 {
+            let slope = derivative(|s| {
+                let (mut moved, mut residuals) = (half, residuals.clone());
+                moved[column / 6][column % 6] += s;
+                stepper.set_residuals(&now, &a, &moved, &mut residuals);
+                SVector::<f64, 24>::from_fn(|row, _| residuals[row / 6][row % 6])
+            });
+            let off = (matrix.column(column) - slope).amax();
+            assert!(off < 1e-9 && slope.amax() > 1e-3, "column {column} is off by {off:e}");
+        }
+    }
+}
+
+/// Elimination along the tree solves the equations of bodies and joints as a dense matrix does.
+#[test]
+fn elimination_along_the_tree_is_that_of_the_whole_matrix() {
+    let stepper = coupled(0.1);
+    let (now, half, a) = somewhere(5);
+    let mut coefficients = stepper.limit(&now);
+    stepper.set_newton(&now, &a, &half, &mut coefficients);
+    let places: Vec<_> = now.iter().map(super::place).collect();
+    let turns: Vec<_> = half.iter().map(|half| super::place(&now[0]).attitude * (1.0 + half[0])).collect();
+    let mut equations = Equations::default();
+    equations.fit(stepper.joints(), &stepper.tree);
+    equations.set_before(stepper.joints(), &stepper.tree, &places);
+    equations.set_after(stepper.joints(), &stepper.tree, &places, &turns);
+    equations.factorise(&stepper.tree, &coefficients);
+    let number = |k: usize| f64::from(u8::try_from(k).unwrap());
+    let gaps = |joint: usize| Vector6::from_fn(|row, _| if row < 3 { number(joint + row) * 0.1 - 0.2 } else { 0.0 });
+    equations.solve(&stepper.tree, &coefficients.vectors, gaps);
+    let mut whole = DMatrix::zeros(36, 36);
+    whole.view_mut((0, 0), (24, 24)).copy_from(&assembled(&stepper, &coefficients));
+    let mut right = DVector::zeros(36);
+    for body in 0..4 {
+        right.rows_mut(6 * body, 6).copy_from(&-coefficients.vectors[body]);
+    }
+    for (joint, joined) in stepper.joints().iter().enumerate() {
+        let at = [super::place_of(&places, joined.above), &places[joined.below]];
+        let turn_of = |body: usize, before: bool| if before { places[body].attitude } else { turns[body] };
+        for before in [true, false] {
+            let [above, below] = [joined.above, Some(joined.below)].map(|body| body.map(|body| turn_of(body, before)));
+            let (mut of_above, mut of_below) = (Matrix6::zeros(), Matrix6::zeros());
+            joined.functions.slopes(at, [above.as_ref(), below.as_ref()], [&mut of_above, &mut of_below]);
+            for (body, slope) in [(joined.above, of_above), (Some(joined.below), of_below)] {
+                let Some(body) = body else { continue };
+                for (row, column) in (0..6).flat_map(|row| (0..3).map(move |column| (row, column))) {
+                    let place = if before {
+                        (6 * body + row, 24 + 3 * joint + column)
+                    } else {
+                        (24 + 3 * joint + column, 6 * body + row)
+                    };
+                    whole[place] = slope[(row, column)];
+                }
+            }
+        }
+        right.rows_mut(24 + 3 * joint, 3).copy_from(&-gaps(joint).fixed_rows::<3>(0));
+    }
+    let expected = whole.lu().solve(&right).unwrap();
+    for body in 0..4 {
+        let off = (equations.unknowns.bodies[body] - expected.rows(6 * body, 6)).amax();
+        assert!(off < 1e-11 * expected.amax(), "body {body}: {off:e}");
+    }
+    for (body, member) in stepper.tree.members.iter().enumerate() {
+        let of_joint = equations.unknowns.joints[body].fixed_rows::<3>(0).into_owned();
+        let off = (of_joint - expected.rows(24 + 3 * member.joint.unwrap(), 3)).amax();
+        assert!(off < 1e-11 * expected.amax(), "joint of body {body}: {off:e}");
+    }
+}
+
+/// Velocities of momenta invert the inertia of all bodies, of which terms between them are a part.
+#[test]
+fn velocities_are_those_of_the_coupled_inertia() {
+    let stepper = coupled(0.1);
+    let (now, velocities, _) = somewhere(6);
+    let momenta = stepper.momenta_of(&now, &velocities);
+    let back = stepper.velocities_of(&now, &momenta);
+    assert!(back.iter().zip(&velocities).all(|(a, b)| (a - b).amax() < 1e-13));
+    let still = stepper.momenta_of(&now, &[Vector6::zeros(); 4]);
+    let [second, third] = [2, 3].map(|body: usize| *now[body].0.as_matrix());
+    let e = Vector3::new(0.3, -0.2, 0.5);
+    let expected = [second.tr_mul(&(third * e)) * 1.2, third.tr_mul(&(second * e)) * 0.6];
+    let off = [2, 3].map(|body| (still[body].fixed_rows::<3>(0) - expected[body - 2]).amax());
+    assert!(off.iter().all(|&off| off < 1e-14) && still[0].amax() < 1e-14, "{off:?}");
+    // The kinetic energy of the bars is half the sum of the squares of their ends' relative velocities.
+    let Bars { A, B, .. } = Bars::OURS;
+    let of_bars = |[one, other]: [usize; 2]| {
+        let [first, second] = [one, other].map(|body| velocities[body].fixed_rows::<3>(0).into_owned());
+        let [turn, next] = [one, other].map(|body| *now[body].0.as_matrix());
+        0.5 * (turn * first.cross_matrix() * A - next * second.cross_matrix() * B).norm_squared()
+    };
+    let alone = |body: usize| 0.5 * velocities[body].dot(&(stepper.at_rest(body, &now[body]).2 * velocities[body]));
+    let still = stepper.energy_of(&now, &stepper.momenta_of(&now, &[Vector6::zeros(); 4]));
+    let expected = still + (0..4).map(alone).sum::<f64>() + of_bars([1, 2]) + of_bars([0, 3]);
+    let energy = stepper.energy_of(&now, &momenta);
+    assert!((energy - expected).abs() < 1e-13 && energy - still > 0.1, "{energy} {expected}");
 }

@@ -6,9 +6,10 @@
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use nalgebra::{Matrix3, Matrix6, Vector6};
+use nalgebra::{Matrix3, Vector6};
 
 use super::constraint::Place;
+use super::couplings::Coefficients;
 use super::equations::Equations;
 use super::{Body, Increment};
 
@@ -28,9 +29,10 @@ pub(super) struct Workspace {
     pub(super) a: Vec<Vector6<f64>>,
     pub(super) half: Vec<Vector6<f64>>,
     pub(super) slow: Vec<Vector6<f64>>,
-    pub(super) residuals: Vec<Vector6<f64>>,
     pub(super) reactions: Vec<Vector6<f64>>,
-    pub(super) matrices: Vec<Matrix6<f64>>,
+    /// Momenta after all changes but the projection.
+    pub(super) changed: Vec<Vector6<f64>>,
+    pub(super) coefficients: Coefficients,
     pub(super) turns: Vec<Matrix3<f64>>,
     pub(super) equations: Equations,
     /// A state before a run.
@@ -38,8 +40,8 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
-    /// Makes room for a number of bodies.
-    pub(super) fn fit(&mut self, bodies: usize) {
+    /// Makes room for a number of bodies and of coupled pairs.
+    pub(super) fn fit(&mut self, bodies: usize, pairs: usize) {
         let space = super::terms::space();
         self.now.resize(bodies, space);
         self.next.resize(bodies, space);
@@ -53,12 +55,12 @@ impl Workspace {
             &mut self.a,
             &mut self.half,
             &mut self.slow,
-            &mut self.residuals,
             &mut self.reactions,
+            &mut self.changed,
         ] {
             vectors.resize(bodies, Vector6::zeros());
         }
-        self.matrices.resize(bodies, Matrix6::zeros());
+        self.coefficients.fit(bodies, pairs);
         self.turns.resize(bodies, Matrix3::zeros());
     }
 }

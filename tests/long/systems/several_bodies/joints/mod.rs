@@ -4,6 +4,7 @@
 
 mod chains;
 mod driven;
+mod friction;
 mod kinds;
 mod loops;
 
