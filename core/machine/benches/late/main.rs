@@ -1,11 +1,13 @@
 //! A declaration that is read while a program runs, beside the compiled one:
 //! `cargo bench -p liestep-machine --features cranelift`.
 //!
-//! Times of a step, in those of the compiled step; the time from a text to the first step, and from each text of the
-//! repository to its machine code; `-- instructions` counts those of a step, by valgrind.
+//! Times of a step, in those of the compiled step: the typed step of a text, and the whole step on slices. Then the time from
+//! a text to the first step, and from each text of the repository to its machine code; `-- instructions` counts those of a
+//! step, by valgrind.
 
-#[path = "../../../tests/benches/kernels/kernel.rs"]
+#[path = "../../../../tests/benches/kernels/kernel.rs"]
 mod kernel;
+mod scenes;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -15,15 +17,18 @@ use declarations::{
     Gyrostat, LogTop, Magnet, OrbitingBody, RodElement, Satellite, SixthOrderTop, SuspendedLoad, TetheredPlate,
     TopOnCart, TwoBodies, UnderwaterBody,
 };
+use liestep::groups::{Advected, CayleyRetraction, Retraction};
 use liestep::mechanics::{Effect, Inertia, Regular, WithKinetic};
-use liestep::motion::{Batch, Batchable, Integrator};
+use liestep::motion::{Batch, Batchable, Integrator, Propagator as _};
+use liestep::with::Method;
 use liestep::{SO3, StateOf, Stepper};
-use liestep_late::{Backend, Declaration, Interpreter, Late, LateError, Program};
+use liestep_late::{Backend, Declaration, Interpreter, Late, LateError, Program, Slots, Whole, numbers};
 use liestep_machine::Machine;
 use nalgebra::Vector3;
 use simba::simd::AutoF64x8;
 
 use kernel::{Effort, Failure, Group, Kernel, arguments, measure};
+use scenes::{Start, entries, links_and_mass, listed, tied_body, top, top_start};
 
 const STEP: f64 = 0.01;
 const LANES: u32 = 8;
@@ -34,13 +39,18 @@ type LateTop<B> = Late<SO3, Vector3<f64>, WithKinetic, B>;
 fn main() -> Result<(), Failure> {
     let words = arguments();
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let (rho, up) = (Vector3::new(0.1, -0.2, 0.4), Vector3::z());
     let inertia = Inertia::from_principal_moments(Vector3::new(2.0, 2.5, 3.0))?;
-    let fourth = FourthOrderTop { J: inertia, weight: 1.5 * 9.81, rho, up };
-    let full = FullTop { J_d: inertia.to_nonstandard(), m: 1.5, g: 9.81, rho, up };
+    let rho = Vector3::new(0.1, -0.2, 0.4);
+    let fourth = FourthOrderTop { J: inertia, weight: 1.5 * 9.81, rho, up: Vector3::z() };
+    let (full, start) = top()?;
+    let (tied, tied_start) = tied_body();
+    let (links, links_start) = links_and_mass()?;
+    let top_kernels = kernels(full.clone(), start)?.into_iter().chain(lanes(&full)?);
     let groups = vec![
-        Group::new("(3.13), any inertia", EFFORT, kernels(full)?),
-        Group::new("of the fourth order", EFFORT, kernels(fourth)?),
+        Group::new("(3.13), any inertia", EFFORT, top_kernels),
+        Group::new("SE(3), two advected", EFFORT, kernels(tied, tied_start)?),
+        Group::new("nine unknowns", EFFORT, kernels(links, links_start)?),
+        Group::new("of the fourth order", EFFORT, kernels(fourth, start)?),
     ];
     if words.is_empty() {
         first_steps();
@@ -53,34 +63,65 @@ fn main() -> Result<(), Failure> {
 }
 
 /// The declaration compiled, and read in each way.
-fn kernels<S>(scene: S) -> Result<[Kernel; 6], Failure>
+fn kernels<S>(scene: S, start: Start<S>) -> Result<[Kernel; 6], Failure>
 where
-    S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone + 'static,
+    S: Regular<Scalar = f64> + Clone + 'static,
+    S::Advected: Advected<S::Group> + Slots,
+    CayleyRetraction: Retraction<S::Group>,
 {
-    let machine: LateTop<Machine> = Late::like(&scene)?;
-    let interpreted: LateTop<Interpreter> = Late::like(&scene)?;
+    let machine: Late<S::Group, S::Advected, WithKinetic, Machine> = Late::like(&scene)?;
+    let interpreted: Late<S::Group, S::Advected, WithKinetic, Interpreter> = Late::like(&scene)?;
+    let declaration = machine.declaration();
+    let values = declaration.described(&numbers(&scene))?;
     Ok([
-        alone("compiled", scene),
-        alone("machine code", machine.clone()),
-        alone("specialised", machine.clone().specialised()),
-        alone("interpreted", interpreted.clone()),
-        in_lanes("in lanes of eight", interpreted),
-        in_lanes("machine code in lanes", machine),
+        alone("compiled", scene, start),
+        alone("machine code", machine.clone(), start),
+        alone("machine code, specialised", machine.specialised(), start),
+        on_slices::<Machine, S>("whole step, machine code", declaration, values.clone(), start),
+        alone("interpreted", interpreted, start),
+        on_slices::<Interpreter, S>("whole step, interpreted", declaration, values, start),
     ])
 }
 
-fn started<S>(scene: S) -> Result<(Stepper<S>, StateOf<S>), Failure>
+/// The declaration in lanes.
+fn lanes(scene: &FullTop) -> Result<[Kernel; 2], Failure> {
+    let (interpreted, machine): (LateTop<Interpreter>, LateTop<Machine>) = (Late::like(scene)?, Late::like(scene)?);
+    Ok([in_lanes("in lanes of eight", interpreted), in_lanes("machine code in lanes", machine)])
+}
+
+fn started<S>(scene: S, (attitude, velocity): Start<S>) -> Result<(Stepper<S>, StateOf<S>), Failure>
 where
-    S: Regular<Scalar = f64, Group = SO3>,
+    S: Regular<Scalar = f64>,
 {
     let stepper = Stepper::new(scene, STEP)?;
-    let state = stepper.start(SO3::exp(Vector3::new(0.8, 0.0, 0.0)), Vector3::new(0.5, 2.0, 6.0))?;
+    let state = stepper.start(attitude, velocity)?;
     Ok((stepper, state))
 }
 
-fn alone<S: Regular<Scalar = f64, Group = SO3> + Clone + 'static>(name: &str, scene: S) -> Kernel {
+fn alone<S: Regular<Scalar = f64> + Clone + 'static>(name: &str, scene: S, start: Start<S>) -> Kernel {
     Kernel::new(name, move || {
-        let (stepper, mut state) = started(scene.clone())?;
+        let (stepper, mut state) = started(scene.clone(), start)?;
+        Ok(move |steps| {
+            for _ in 0..steps {
+                stepper.step(&mut state)?;
+            }
+            black_box(&state);
+            Ok(0)
+        })
+    })
+}
+
+/// The whole step of a declaration.
+fn on_slices<B: Backend<f64>, S: Regular<Scalar = f64> + 'static>(
+    name: &str,
+    declaration: &'static Declaration,
+    values: Vec<f64>,
+    (attitude, velocity): Start<S>,
+) -> Kernel {
+    Kernel::new(name, move || {
+        let stepper: Whole<B> = Whole::of(declaration, &values, STEP, Method::default())?;
+        stepper.prepare();
+        let mut state = stepper.start(&entries(&attitude), &listed(&velocity))?;
         Ok(move |steps| {
             for _ in 0..steps {
                 stepper.step(&mut state)?;
@@ -98,7 +139,7 @@ where
     Stepper<S>: Batchable<AutoF64x8> + Integrator<State = StateOf<S>> + 'static,
 {
     Kernel::new(name, move || {
-        let bodies = (0..LANES).map(|_| started(scene.clone())).collect::<Result<Vec<_>, _>>()?;
+        let bodies = (0..LANES).map(|_| started(scene.clone(), top_start())).collect::<Result<Vec<_>, _>>()?;
         let mut batch = Batch::<AutoF64x8, _>::new(&bodies)?;
         Ok(move |steps| {
             batch.run(u64::from(steps / LANES));
@@ -117,7 +158,7 @@ fn first_steps() {
         let numbers: [(&str, &[f64]); 5] =
             [("J_d", &inertia), ("m", &[1.5]), ("g", &[9.81]), ("rho", &[0.1, 0.0, 0.4]), ("up", &[0.0, 0.0, 1.0])];
         let late = numbers.iter().try_fold(late, |late, (name, value)| late.with(name, value)).expect("numbers");
-        let (stepper, mut state) = started(late).expect("a start");
+        let (stepper, mut state) = started(late, top_start()).expect("a start");
         stepper.step(&mut state).expect("a step");
         clock.elapsed().as_secs_f64() * 1e3
     });
