@@ -21,8 +21,8 @@ pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Numbers, Real, real};
 
 // Decisions of a solve, for steps that are programs.
 pub use crate::solving::{
-    LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, SETTLED, Solvability, TurningLimits,
-    has_sufficed, largest_fraction, may_suffice, safe, six_digits, turning_limits,
+    LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, NEAR_ENOUGH, SETTLED, SUFFICIENT,
+    Solvability, TurningLimits, has_sufficed, largest_fraction, may_suffice, safe, six_digits, turning_limits,
 };
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};

@@ -26,12 +26,13 @@ mod whole;
 mod written;
 
 pub use carried::Slots;
-pub use code::{Backend, Code, Given, Interpreter, applied};
+pub use code::{Backend, Code, Given, Interpreter, StepInputs, UsualStep, applied};
 pub use declaration::{Declaration, kept};
 pub use effect::{Constants, StepTerms};
 pub use error::{LateError, Mistake};
 pub use lanes::Wider;
 pub use latex::latex;
+pub use liestep_derivation::whole::Sizes;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use specialised::specialised;
 pub use term::{Late, numbers};

@@ -1,26 +1,28 @@
 //! Programs as code of Cranelift, operation by operation.
 
-use std::ops::Range;
 use std::sync::LazyLock;
 
 use cranelift_codegen::control::ControlPlane;
-use cranelift_codegen::ir::{AbiParam, FuncRef, GlobalValue, InstBuilder as _, MemFlagsData, Type, Value, types};
+use cranelift_codegen::ir::{AbiParam, InstBuilder as _, MemFlagsData, SigRef, Signature, Type, Value, types};
 use cranelift_codegen::isa::{OwnedTargetIsa, TargetIsa};
 use cranelift_codegen::settings::{self, Configurable as _};
 use cranelift_codegen::{CompiledCode, Context};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
-use cranelift_jit::{JITBuilder, JITModule};
-use cranelift_module::{DataDescription, FuncId, Linkage, Module as _, ModuleReloc, default_libcall_names};
 use liestep_late::{Array, Function, Operation, Program, applied};
 
-use crate::registers::Registers;
+use crate::piece::Piece;
+use crate::registers::{Frame, Registers};
 
 /// The instruction set of this machine.
 pub(crate) fn isa() -> Result<OwnedTargetIsa, String> {
     static ISA: LazyLock<Result<OwnedTargetIsa, String>> = LazyLock::new(|| {
         let mut flags = settings::builder();
-        // The program is optimised already, and `Registers` allocates registers.
-        for (name, value) in [("opt_level", "none"), ("enable_verifier", "false")] {
+        // The program is optimised already, and `Registers` allocates registers. A frame of more than a page touches each
+        // of its pages in order, so that one too large for the stack ends at the guard page.
+        let options = [("opt_level", "none"), ("enable_verifier", "false")];
+        for (name, value) in
+            options.into_iter().chain([("enable_probestack", "true"), ("probestack_strategy", "inline")])
+        {
             flags.set(name, value).map_err(|error| error.to_string())?;
         }
         cranelift_native::builder()?.finish(settings::Flags::new(flags)).map_err(|error| error.to_string())
@@ -28,38 +30,64 @@ pub(crate) fn isa() -> Result<OwnedTargetIsa, String> {
     ISA.clone()
 }
 
-/// Compiles a program to a function of its constants, of the arrays of its other inputs and of the array of its
-/// outputs: for one number at each place, or for two of several lanes.
-pub(crate) fn module(program: &Program, lanes: usize) -> Result<(JITModule, FuncId), String> {
-    let mut builder = JITBuilder::with_isa(isa()?, default_libcall_names());
-    builder.symbol(FUNCTION, function as *const u8);
-    let mut module = JITModule::new(builder);
-    let pointer = module.target_config().pointer_type();
-    let mut signature = module.make_signature();
-    signature.params.extend([AbiParam::new(types::I32), AbiParam::new(types::F64)]);
-    signature.returns.push(AbiParam::new(types::F64));
-    let shared = module.declare_function(FUNCTION, Linkage::Import, &signature).map_err(|error| error.to_string())?;
-    let mut own = module.make_context();
-    own.func.signature.params.extend([AbiParam::new(pointer); 3]);
-    let id = module.declare_anonymous_function(&own.func.signature).map_err(|error| error.to_string())?;
-    let called = module.declare_func_in_func(shared, &mut own.func);
-    let literals = module.declare_anonymous_data(false, false).map_err(|error| error.to_string())?;
-    let mut data = DataDescription::new();
-    data.set_align(16);
-    data.define(program.literals.iter().flat_map(|one| one.to_ne_bytes().repeat(lanes.min(2))).collect());
-    module.define_data(literals, &data).map_err(|error| error.to_string())?;
-    let literals = module.declare_data_in_func(literals, &mut own.func);
+/// Numbers in memory, at the alignment of two.
+#[derive(Debug)]
+pub(crate) struct Literals(#[allow(dead_code)] Box<[Pair]>);
+
+#[derive(Debug)]
+#[repr(C, align(16))]
+struct Pair([f64; 2]);
+
+impl Literals {
+    pub(crate) fn of(numbers: &[f64]) -> Self {
+        Self(numbers.chunks(2).map(|pair| Pair([pair[0], pair.get(1).copied().unwrap_or(0.0)])).collect())
+    }
+
+    /// The address of the first.
+    pub(crate) fn start(&self, builder: &mut FunctionBuilder, pointer: Type) -> Value {
+        builder.ins().iconst(pointer, address(self.0.as_ptr()))
+    }
+}
+
+fn address<T>(pointer: *const T) -> i64 {
+    pointer.expose_provenance().cast_signed() as i64
+}
+
+/// The function of [`function`], as code calls it.
+pub(crate) struct Callee {
+    signature: SigRef,
+    pointer: Type,
+}
+
+/// The machine code of a function of pointers, which may return an integer.
+pub(crate) fn code(
+    pointers: usize,
+    returned: Option<Type>,
+    write: impl FnOnce(&mut FunctionBuilder, Type, &Callee) -> Result<(), String>,
+) -> Result<Vec<u8>, String> {
+    let isa = isa()?;
+    let (pointer, convention) = (isa.pointer_type(), isa.default_call_conv());
+    let mut own = Context::new();
+    own.func.signature.call_conv = convention;
+    own.func.signature.params.extend((0..pointers).map(|_| AbiParam::new(pointer)));
+    own.func.signature.returns.extend(returned.map(AbiParam::new));
     let mut context = FunctionBuilderContext::new();
     let mut builder = FunctionBuilder::new(&mut own.func, &mut context);
-    write(&mut builder, (program, lanes), (called, literals), pointer)?;
-    builder.finalize(module.target_config());
-    let code = compiled(&mut own, module.isa())?;
-    let relocations: Vec<_> =
-        code.buffer.relocs().iter().map(|one| ModuleReloc::from_mach_reloc(one, &own.func, id)).collect();
-    let defined = module.define_function_bytes(id, u64::from(code.buffer.alignment), code.code_buffer(), &relocations);
-    defined.map_err(|error| error.to_string())?;
-    module.finalize_definitions().map_err(|error| error.to_string())?;
-    Ok((module, id))
+    let mut signature = Signature::new(convention);
+    signature.params.extend([AbiParam::new(types::I32), AbiParam::new(types::F64)]);
+    signature.returns.push(AbiParam::new(types::F64));
+    let callee = Callee { signature: builder.import_signature(signature), pointer };
+    let block = builder.create_block();
+    builder.append_block_params_for_function_params(block);
+    builder.switch_to_block(block);
+    write(&mut builder, pointer, &callee)?;
+    builder.seal_all_blocks();
+    builder.finalize(isa.frontend_config());
+    let code = compiled(&mut own, &*isa)?;
+    if !code.buffer.relocs().is_empty() {
+        return Err("code has addresses to be filled in".to_owned());
+    }
+    Ok(code.code_buffer().to_vec())
 }
 
 /// The machine code of a function, without the passes that [`Context::compile`] runs before: one would remove the block
@@ -73,60 +101,22 @@ fn compiled(context: &mut Context, isa: &dyn TargetIsa) -> Result<CompiledCode, 
 }
 
 /// The offset of a number in bytes.
-fn offset(at: usize, lanes: usize) -> Result<i32, String> {
+pub(crate) fn offset(at: usize, lanes: usize) -> Result<i32, String> {
     i32::try_from(8 * at * lanes).map_err(|_| "an array is too long".to_owned())
 }
 
-/// A part of the generated code.
-enum Part {
-    Operation(usize),
-    /// The store of one output, or of two.
-    Outputs(Range<usize>),
+/// The flags of all accesses: the caller has checked that arrays are long enough.
+pub(crate) fn flags() -> MemFlagsData {
+    MemFlagsData::new().with_notrap()
 }
 
-impl Part {
-    /// The values that the part reads; a single one twice.
-    fn operands(&self, program: &Program) -> [usize; 2] {
-        match self {
-            Self::Operation(at) => program.operations[*at].operands(),
-            Self::Outputs(places) => [places.start, places.end - 1].map(|place| program.outputs[place] as usize),
-        }
-    }
-
-    fn commutes(&self, program: &Program) -> bool {
-        let Self::Operation(at) = self else { return false };
-        matches!(program.operations[*at], Operation::Add(..) | Operation::Multiply(..))
-    }
-}
-
-/// The parts of a program in the order of its machine code.
-///
-/// A caller loads a vector, and the Jacobian after it, two numbers at a time: it would wait for stores of another
-/// width.
-fn parts(program: &Program, lanes: usize) -> Vec<Part> {
-    let (count, size) = (program.outputs.len(), program.outputs.len().isqrt());
-    let vector = if size * (size + 1) == count { size } else { count };
-    let (most, fixed) = (if lanes > 1 { 1 } else { 2 }, program.inputs.len() + program.literals.len());
-    let (mut parts, mut made, mut at) = (Vec::new(), 0, 0);
-    while at < count {
-        let end = if at < vector { vector } else { count }.min(at + most);
-        for &output in &program.outputs[at..end] {
-            let missing = (output as usize + 1).saturating_sub(fixed);
-            parts.extend((made..missing).map(Part::Operation));
-            made = made.max(missing);
-        }
-        parts.push(Part::Outputs(at..end));
-        at = end;
-    }
-    parts
-}
-
-fn result(
+/// The result of an operation on these operands.
+pub(crate) fn result(
     builder: &mut FunctionBuilder,
     registers: &mut Registers,
-    operation: Operation,
+    operation: Operation<usize>,
     [a, b]: [Value; 2],
-    called: FuncRef,
+    callee: &Callee,
 ) -> Result<Value, String> {
     Ok(match operation {
         Operation::Negate(_) => builder.ins().fneg(a),
@@ -138,9 +128,10 @@ fn result(
         Operation::Apply(function, _) => {
             // A call may overwrite every register.
             registers.leave(builder, 0);
-            let code = builder.ins().iconst(types::I32, code(function)?);
+            let code = builder.ins().iconst(types::I32, number(function)?);
             let apply = |builder: &mut FunctionBuilder, a| {
-                let call = builder.ins().call(called, &[code, a]);
+                let place = builder.ins().iconst(callee.pointer, address(self::function as *const u8));
+                let call = builder.ins().call_indirect(callee.signature, place, &[code, a]);
                 builder.inst_results(call)[0]
             };
             if registers.number == types::F64 {
@@ -153,63 +144,59 @@ fn result(
     })
 }
 
-fn both(builder: &mut FunctionBuilder, first: Value, second: Value) -> Value {
+/// Two numbers as one value.
+pub(crate) fn both(builder: &mut FunctionBuilder, first: Value, second: Value) -> Value {
     let both = builder.ins().splat(types::F64X2, first);
     builder.ins().insertlane(both, second, 1)
+}
+
+/// The machine code of a program as a function of its constants, of the arrays of its other inputs and of the array of its
+/// outputs: for one number at each place, or for two of several lanes.
+pub(crate) fn program(program: &Program, lanes: usize) -> Result<(Vec<u8>, Literals), String> {
+    let repeated: Vec<f64> = program.literals.iter().flat_map(|&one| vec![one; lanes.min(2)]).collect();
+    let literals = Literals::of(&repeated);
+    let code = code(3, None, |builder, pointer, callee| write(builder, (program, lanes), &literals, pointer, callee))?;
+    Ok((code, literals))
 }
 
 fn write(
     builder: &mut FunctionBuilder,
     (program, lanes): (&Program, usize),
-    (called, literals): (FuncRef, GlobalValue),
+    literals: &Literals,
     pointer: Type,
+    callee: &Callee,
 ) -> Result<(), String> {
-    let block = builder.create_block();
-    builder.append_block_params_for_function_params(block);
-    builder.switch_to_block(block);
-    builder.seal_block(block);
+    let block = builder.current_block().ok_or("no block")?;
     let [constants, arrays, outputs] = [0, 1, 2].map(|at| builder.block_params(block)[at]);
-    // The caller has checked that the arrays are long enough.
-    let flags = MemFlagsData::new().with_notrap();
     let mut begins = [constants; Array::COUNT];
     for array in given(&least(program)) {
         let place = offset(array as usize, 1)?;
-        begins[array as usize] = builder.ins().load(pointer, flags.with_readonly(), arrays, place);
+        begins[array as usize] = builder.ins().load(pointer, flags().with_readonly(), arrays, place);
     }
+    let literals = literals.start(builder, pointer);
+    let mut piece = Piece::default();
+    let input = |piece: &mut Piece, source: liestep_late::Source| {
+        Ok(piece.given((begins[source.array as usize], offset(source.at, lanes)?)))
+    };
+    let values = piece.append(program, input, |at, _| Ok((literals, offset(at, lanes.min(2))?)))?;
+    // A caller loads a vector, and the Jacobian after it, two numbers at a time: it would wait for stores of another width.
+    let (count, size) = (values.len(), values.len().isqrt());
+    let vector = if size * (size + 1) == count { size } else { count };
+    let most = if lanes > 1 { 1 } else { 2 };
+    let mut at = 0;
+    while at < count {
+        let end = if at < vector { vector } else { count }.min(at + most);
+        values[at..end].iter().for_each(|&value| piece.need_up_to(value));
+        piece.store(values[at], (end - at > 1).then(|| values[end - 1]), (outputs, offset(at, lanes)?));
+        at = end;
+    }
+    piece.stop();
     let number = if lanes > 1 { types::F64X2 } else { types::F64 };
-    let literals = builder.ins().symbol_value(pointer, literals);
-    let mut given = Vec::new();
-    for source in &program.inputs {
-        given.push((begins[source.array as usize], offset(source.at, lanes)?));
-    }
-    for at in 0..program.literals.len() {
-        given.push((literals, offset(at, lanes.min(2))?));
-    }
-    let (parts, results) = (parts(program, lanes), given.len());
-    let mut reads = vec![Vec::new(); results + program.operations.len()];
-    for (time, part) in parts.iter().enumerate().rev() {
-        let [first, second] = part.operands(program);
-        reads[first].push(time);
-        if second != first {
-            reads[second].push(time);
-        }
-    }
-    let mut registers = Registers::new(builder, (number, pointer), flags, given, reads);
-    for part in parts {
-        let values = registers.read(builder, part.operands(program), part.commutes(program))?;
-        match part {
-            Part::Operation(at) => {
-                let value = result(builder, &mut registers, program.operations[at], values, called)?;
-                registers.compute(builder, results + at, value);
-            }
-            Part::Outputs(places) => {
-                let written = if places.len() > 1 { both(builder, values[0], values[1]) } else { values[0] };
-                builder.ins().store(flags, written, outputs, offset(places.start, lanes)?);
-            }
-        }
-    }
+    let frame = Frame::new(builder, pointer, 0);
+    let mut writing = piece.begin(|places, reads| Registers::new(number, flags(), (frame, 0), places, reads))?;
+    writing.write(builder, callee)?;
     builder.ins().return_(&[]);
-    Ok(())
+    frame.check(builder)
 }
 
 /// The least length of each array that a program reads.
@@ -227,9 +214,6 @@ pub(crate) fn given(least: &[usize; Array::COUNT]) -> impl Iterator<Item = Array
     Array::ALL.into_iter().filter(|&array| array != Array::Constants && least[array as usize] > 0)
 }
 
-/// The symbol of `function`.
-const FUNCTION: &str = "liestep_function";
-
 static FUNCTIONS: LazyLock<Vec<Function>> = LazyLock::new(|| {
     let named = [Function::Sqrt, Function::Ln, Function::Exp, Function::Sin, Function::Cos];
     let families = (1..=10).map(Function::Stumpff).chain((0..=6).map(Function::LogRatio));
@@ -237,7 +221,7 @@ static FUNCTIONS: LazyLock<Vec<Function>> = LazyLock::new(|| {
 });
 
 /// The number of a function in the list, for [`function`].
-fn code(function: Function) -> Result<i64, String> {
+fn number(function: Function) -> Result<i64, String> {
     let place = FUNCTIONS.iter().zip(0..).find(|(one, _)| **one == function);
     place.map(|(_, place)| place).ok_or_else(|| format!("{function:?} isn't among the functions"))
 }

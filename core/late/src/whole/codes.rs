@@ -6,7 +6,7 @@ use liestep::motion::{Cost, Factor, FactorKind, Layout};
 use liestep_derivation::whole::{Form, MatrixFactor, Programs, Sizes, WholeStep};
 use liestep_derivation::{Array, Program};
 
-use crate::code::Backend;
+use crate::code::{Backend, UsualStep};
 use crate::declaration::{Declaration, Ready, ready_each};
 use crate::error::LateError;
 
@@ -51,6 +51,21 @@ impl<B: Backend<f64>> Codes<B> {
         let layout = layout(&sizes, &factors);
         let rotations = factors.iter().filter(|factor| factor.form == Form::Rotation).count();
         Ok(Self { declaration, sizes, factors, rotations, layout, code, operations })
+    }
+
+    /// The programs of a usual step.
+    #[inline]
+    pub(super) fn usual(&self) -> UsualStep<'_, B::Code> {
+        let Programs { target, iterate, again, finish, safe, .. } = &self.code;
+        UsualStep {
+            sizes: &self.sizes,
+            is_product: self.is_product(),
+            target: &target.code,
+            iterate: &iterate.code,
+            again: &again.code,
+            finish: &finish.code,
+            safe: safe.as_ref().map(|program| &program.code),
+        }
     }
 
     pub(super) fn is_product(&self) -> bool {

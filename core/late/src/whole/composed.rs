@@ -75,6 +75,16 @@ impl Stages {
         of_stages + super::step::room(codes)
     }
 
+    /// A single step that a back end makes in one piece; returns its iterations.
+    #[inline]
+    pub(super) fn step_in_one_piece<B: Backend<f64>>(
+        &self,
+        numbered: Numbered<'_, B>,
+        state: &mut [f64],
+    ) -> Option<u32> {
+        if self.list.is_empty() { numbered.step_in_one_piece(self.first(), state) } else { None }
+    }
+
     /// One step; returns the sum of the iterations. After an error the state is as it was.
     #[inline]
     pub(super) fn step<B: Backend<f64>>(

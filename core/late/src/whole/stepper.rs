@@ -153,9 +153,10 @@ impl<B: Backend<f64>> Whole<B> {
 
     /// Compiles the code of a usual step now that is otherwise compiled after some runs.
     pub fn prepare(&self) {
-        let code = &self.codes.code;
-        let usual = [&code.target, &code.iterate, &code.again, &code.finish].into_iter().chain(&code.safe);
-        usual.for_each(|program| B::prepare(&program.code));
+        let usual = self.codes.usual();
+        if !B::prepare_step(&usual) {
+            usual.programs().for_each(B::prepare);
+        }
     }
 
     /// The state at the start, from an attitude, as the matrices of its factors row by row, and a momentum in the body frame.
@@ -367,6 +368,10 @@ impl<B: Backend<f64>> Propagator for Whole<B> {
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
         self.checked(state)?;
+        // A step in one piece needs no room.
+        if let Some(iterations) = self.stages.step_in_one_piece(self.numbered(), state) {
+            return Ok(StepReport::of(iterations));
+        }
         self.in_room(|room| self.step_in(state, room))
     }
 
@@ -388,7 +393,11 @@ impl<B: Backend<f64>> Propagator for Whole<B> {
             let mut iterations = 0;
             while steps > 0 {
                 for _ in 0..steps {
-                    iterations += u64::from(self.step_in(state, room)?.iterations);
+                    let made = match self.stages.step_in_one_piece(self.numbered(), state) {
+                        Some(iterations) => iterations,
+                        None => self.step_in(state, room)?.iterations,
+                    };
+                    iterations += u64::from(made);
                 }
                 steps = next(state, self.time(state));
             }
