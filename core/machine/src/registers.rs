@@ -25,7 +25,8 @@ pub(crate) struct Registers {
     /// The times of each value's reads, the next last.
     reads: Vec<Vec<usize>>,
     frame: Frame,
-    /// The bytes of the frame that are set aside.
+    /// The bytes of the frame that belong to others, and those that are set aside.
+    own: i32,
     set_aside: u32,
     /// Places in the frame whose values aren't read again.
     free: Vec<i32>,
@@ -67,7 +68,8 @@ impl Registers {
         places: Vec<Option<Place>>,
         reads: Vec<Vec<usize>>,
     ) -> Self {
-        Self { number, flags, held: Vec::new(), places, reads, frame, set_aside, free: Vec::new() }
+        let own = set_aside.cast_signed();
+        Self { number, flags, held: Vec::new(), places, reads, frame, own, set_aside, free: Vec::new() }
     }
 
     /// Two values for an operation that reads them now: the first in a register, the second in a register or from
@@ -98,7 +100,7 @@ impl Registers {
         for at in [first, second] {
             if self.reads[at].is_empty() {
                 self.held.retain(|&(one, _)| one != at);
-                let place = self.places[at].take_if(|place| place.0 == self.frame.start);
+                let place = self.places[at].take_if(|place| place.0 == self.frame.start && place.1 >= self.own);
                 self.free.extend(place.map(|place| place.1));
             }
         }
