@@ -12,9 +12,10 @@ use liestep::effects::{Drag, Gravity, GravityGradient, RigidBody, Rotor, Torque}
 use liestep::laws::samples::Random;
 use liestep::mechanics::Effect;
 use liestep::motion::Propagator as _;
+use liestep::motion::{AnyState, AnyStepper, Integrator as _};
 use liestep::with::Method;
 use liestep_derivation::ParameterKind;
-use liestep_late::{Backend, Declaration, Interpreter, Whole, WholeError};
+use liestep_late::{Backend, BackendInLanes, Declaration, Interpreter, Whole, WholeError};
 use liestep_machine::{Machine, used_memory};
 
 fn metric(random: &mut Random, rows: usize) -> Vec<f64> {
@@ -148,6 +149,85 @@ fn steps_of_all_declarations() {
     println!("{seen:?}");
     let has_settled_in = |count| seen.iterations.get(&count).is_some_and(|&steps| steps > 100);
     assert!(seen.steps > 50_000 && seen.errors > 20 && seen.with_care > 20 && (1..6).all(has_settled_in), "{seen:?}");
+}
+
+/// Bodies in lanes, each with numbers and a velocity of its own, against the same bodies alone; returns how many of them are
+/// left at the end, and how many errors there were.
+fn compare_lanes<B: BackendInLanes>(declaration: &'static Declaration, h: f64, seed: u64, count: usize) -> [usize; 2] {
+    let mut random = Random::new(seed);
+    let n: usize = declaration.factors.iter().map(|factor| factor.generators.len()).sum();
+    let mut bodies: Vec<(AnyStepper, AnyState)> = Vec::new();
+    for _ in 0..40 {
+        let values = numbers(declaration, &mut random);
+        let velocity: Vec<f64> = (0..n).map(|_| random.signed()).collect();
+        let method = "step, substeps 4".parse().expect("a method");
+        let Ok(whole) = Whole::<B>::of(declaration, &values, h, method) else { continue };
+        whole.prepare();
+        let stepper = whole.into_joinable();
+        if let Ok(state) = stepper.start(&identity(declaration), &velocity)
+            && bodies.len() < count
+        {
+            bodies.push((stepper, state));
+        }
+    }
+    let Some((mut together, joined)) = AnyStepper::abreast(&bodies) else {
+        panic!("{} bodies of {} by {h} s aren't joined", bodies.len(), declaration.name)
+    };
+    assert_eq!(joined, count, "{}", declaration.name);
+    let mut errors = vec![None; count];
+    // Attitudes are restored every 1,024 steps.
+    let pieces = if h < 0.05 { [1, 1, 62, 1000] } else { [1, 1, 30, 30] };
+    for piece in pieces {
+        together.run(piece);
+        for (lane, (stepper, state)) in bodies.iter_mut().enumerate() {
+            if errors[lane].is_none() {
+                errors[lane] = stepper.run_stretches(state, piece, &mut |_, _| 0).err();
+            }
+            let what = format!("lane {lane} of {} by {h} s", declaration.name);
+            assert_eq!(together.error(lane), errors[lane].as_ref(), "{what}");
+            assert_eq!(bits(&together.state(lane)), bits(state.numbers()), "{what}");
+        }
+    }
+    let stopped = errors.iter().flatten().count();
+    [count - stopped, stopped]
+}
+
+#[test]
+fn lanes_of_all_declarations() {
+    let texts = texts! {
+        FullTop CayleyTop ContinuousTop SlidingTop Magnet Satellite FourthOrderTop ElasticFlow TetheredPlate Flyer
+        OrbitingBody UnderwaterBody DoublePendulum TopOnCart SuspendedLoad Gyrostat TwoBodies
+    };
+    let terms = texts! { RigidBody Gravity GravityGradient Rotor Drag Torque }.map(parsed);
+    let sum = Declaration::sum(&terms).expect("a sum");
+    let mut seen = [0; 2];
+    for (seed, declaration) in (1..).zip(texts.into_iter().chain(OTHERS).map(parsed).chain([sum])) {
+        // Logarithms round by the lane that is farthest from the identity.
+        let longest = if declaration.name == "FourthOrderTop" { 0.1 } else { 0.7 };
+        for (h, count) in [(0.01, 8), (0.1, 5), (longest, 8)] {
+            let [left, stopped] = if seed % 2 == 0 {
+                compare_lanes::<Machine>(declaration, h, seed, count)
+            } else {
+                compare_lanes::<Interpreter>(declaration, h, seed, count)
+            };
+            seen = [seen[0] + left, seen[1] + stopped];
+        }
+    }
+    println!("{seen:?}");
+    assert!(seen[0] > 200 && seen[1] > 20, "{seen:?}");
+    let [one, other] = [FullTop::DECLARATION, CayleyTop::DECLARATION].map(|text| {
+        let declaration = parsed(text);
+        let values = numbers(declaration, &mut Random::new(1));
+        let whole: Whole<Machine> = Whole::of(declaration, &values, 0.01, Method::default()).expect("a stepper");
+        let stepper = whole.into_joinable();
+        let state = stepper.start(&identity(declaration), &[0.1, 0.2, 3.0]).expect("a start");
+        (stepper, state)
+    });
+    let both = AnyStepper::abreast(&[one.clone(), other]).expect("one body");
+    assert_eq!(both.1, 1, "two texts share no lanes");
+    let mut later = one.clone();
+    later.0.step(&mut later.1).expect("a step");
+    assert_eq!(AnyStepper::abreast(&[one, later]).expect("one body").1, 1, "nor do two times");
 }
 
 /// Hostile numbers within a state have the same answers.

@@ -19,6 +19,7 @@
 // The first module, because its page comes first in the documentation.
 mod stepper;
 
+mod abreast;
 mod any;
 mod batch;
 mod declared;
@@ -38,6 +39,7 @@ mod state;
 mod summation;
 
 pub use crate::groups::layout::{Factor, FactorKind};
+pub use abreast::{Abreast, Joinable};
 pub use any::{AnyMotion, AnyState, AnyStepper};
 pub use batch::{Batch, Batchable};
 pub use declared::OwnStep;

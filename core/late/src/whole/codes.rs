@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use liestep::motion::{Cost, Factor, FactorKind, Layout};
+use liestep::numbers::Real;
 use liestep_derivation::whole::{Form, MatrixFactor, Programs, Sizes, WholeStep};
 use liestep_derivation::{Array, Program};
 
@@ -74,16 +75,16 @@ impl<B: Backend<f64>> Codes<B> {
 
     /// The determinant of a matrix by those of its blocks, relative to the products of their diagonals; negative where one
     /// of these is. A single block's is its own.
-    pub(super) fn determinant(&self, pairs: &[f64]) -> f64 {
+    pub(super) fn determinant<T: Real>(&self, pairs: &[T]) -> T {
         if !self.is_product() {
             return pairs[0];
         }
-        let (mut value, mut is_negative) = (1.0_f64, false);
+        let (mut value, mut is_negative) = (T::one(), T::zero().simd_lt(T::zero()));
         for pair in pairs.chunks_exact(2) {
-            value *= pair[0] / pair[1].abs();
-            is_negative |= pair[0] < 0.0;
+            value *= pair[0] / pair[1].simd_abs();
+            is_negative = is_negative | pair[0].simd_lt(T::zero());
         }
-        if is_negative { -value.abs() } else { value }
+        (-value.simd_abs()).select(is_negative, value)
     }
 
     /// The advected parameters, seen from an attitude.

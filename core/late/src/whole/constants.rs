@@ -2,6 +2,7 @@
 
 use liestep::__private::safe;
 use liestep::SetupError;
+use liestep::numbers::Real;
 use liestep_derivation::Array;
 
 use super::codes::{Codes, rare};
@@ -69,12 +70,22 @@ impl StepConstants {
         advected: &[f64],
         room: &mut [f64],
     ) -> f64 {
-        let Some(program) = &codes.code.safe else { return self.safe };
-        let given = [(Array::Parameters, numbers), (Array::Advected, advected)];
-        let determinants = &mut room[..program.outputs];
-        B::run(&program.code, &[], given, determinants);
-        safe(codes.determinant(determinants))
+        safe_at::<f64, B>(codes, numbers, advected, room).unwrap_or(self.safe)
     }
+}
+
+/// The determinant above which a Jacobian may be used again, where the inertia varies.
+#[inline]
+pub(super) fn safe_at<T, B>(codes: &Codes<B>, numbers: &[T], advected: &[T], room: &mut [T]) -> Option<T>
+where
+    T: Real,
+    B: Backend<f64> + Backend<T, Code = <B as Backend<f64>>::Code>,
+{
+    let program = codes.code.safe.as_ref()?;
+    let given = [(Array::Parameters, numbers), (Array::Advected, advected)];
+    let determinants = &mut room[..program.outputs];
+    <B as Backend<T>>::run(&program.code, &[], given, determinants);
+    Some(safe(codes.determinant(determinants)))
 }
 
 /// The constants of a step `h`, without any check.

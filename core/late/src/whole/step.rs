@@ -208,7 +208,7 @@ impl<'a, B: Backend<f64>> Numbered<'a, B> {
     /// The rare work after the first step of a single step, and after a fixed number of further ones.
     #[cold]
     #[inline(never)]
-    fn look(self, state: &mut [f64]) {
+    pub(super) fn look(self, state: &mut [f64]) {
         let sizes = &self.codes.sizes;
         if state[state.len() - 1] == 0.0 {
             // The increment before the first was an estimate.

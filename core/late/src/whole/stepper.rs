@@ -57,11 +57,11 @@ use crate::error::LateError;
 /// ```
 #[derive(Debug)]
 pub struct Whole<B: Backend<f64> = Interpreter> {
-    codes: Arc<Codes<B>>,
-    numbers: Arc<[f64]>,
+    pub(super) codes: Arc<Codes<B>>,
+    pub(super) numbers: Arc<[f64]>,
     h: f64,
     method: Method,
-    stages: Stages,
+    pub(super) stages: Stages,
 }
 
 impl<B: Backend<f64>> Clone for Whole<B> {
@@ -207,7 +207,7 @@ impl<B: Backend<f64>> Whole<B> {
         Ok(report)
     }
 
-    fn numbered(&self) -> Numbered<'_, B> {
+    pub(super) fn numbered(&self) -> Numbered<'_, B> {
         Numbered { codes: &self.codes, numbers: &self.numbers }
     }
 
@@ -260,6 +260,11 @@ impl<B: Backend<f64>> Whole<B> {
             Ok(iterations) => Ok(StepReport::of(iterations)),
             Err(error) => self.in_parts(state, error),
         }
+    }
+
+    /// One step of a state of the right length, by the driver.
+    pub(super) fn step_alone(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
+        self.in_room(|room| self.step_in(state, room))
     }
 
     /// Makes the step in equal parts, if the method says so; otherwise the error, for the whole step.
@@ -372,7 +377,7 @@ impl<B: Backend<f64>> Propagator for Whole<B> {
         if let Some(iterations) = self.stages.step_in_one_piece(self.numbered(), state) {
             return Ok(StepReport::of(iterations));
         }
-        self.in_room(|room| self.step_in(state, room))
+        self.step_alone(state)
     }
 
     fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {

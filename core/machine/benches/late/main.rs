@@ -19,10 +19,12 @@ use declarations::{
 };
 use liestep::groups::{Advected, CayleyRetraction, Retraction};
 use liestep::mechanics::{Effect, Inertia, Regular, WithKinetic};
-use liestep::motion::{Batch, Batchable, Integrator, Propagator as _};
+use liestep::motion::{AnyStepper, Batch, Batchable, Integrator, Propagator as _};
 use liestep::with::Method;
 use liestep::{SO3, StateOf, Stepper};
-use liestep_late::{Backend, Declaration, Interpreter, Late, LateError, Program, Slots, Whole, numbers};
+use liestep_late::{
+    Backend, BackendInLanes, Declaration, Interpreter, Late, LateError, Program, Slots, Whole, numbers,
+};
 use liestep_machine::Machine;
 use nalgebra::Vector3;
 use simba::simd::AutoF64x8;
@@ -84,9 +86,33 @@ where
 }
 
 /// The declaration in lanes.
-fn lanes(scene: &FullTop) -> Result<[Kernel; 2], Failure> {
+fn lanes(scene: &FullTop) -> Result<[Kernel; 4], Failure> {
     let (interpreted, machine): (LateTop<Interpreter>, LateTop<Machine>) = (Late::like(scene)?, Late::like(scene)?);
-    Ok([in_lanes("in lanes of eight", interpreted), in_lanes("machine code in lanes", machine)])
+    let declaration = machine.declaration();
+    let values = declaration.described(&numbers(scene))?;
+    Ok([
+        in_lanes("in lanes of eight", interpreted),
+        slices_in_lanes::<Interpreter>("whole step, in lanes", declaration, values.clone()),
+        in_lanes("machine code in lanes", machine),
+        slices_in_lanes::<Machine>("whole step, machine code in lanes", declaration, values),
+    ])
+}
+
+fn slices_in_lanes<B: BackendInLanes>(name: &str, declaration: &'static Declaration, values: Vec<f64>) -> Kernel {
+    Kernel::new(name, move || {
+        let (attitude, velocity) = top_start();
+        let body = |_| {
+            let stepper = Whole::<B>::of(declaration, &values, STEP, Method::default())?.into_joinable();
+            let state = stepper.start(&entries(&attitude), &listed(&velocity))?;
+            Ok::<_, Failure>((stepper, state))
+        };
+        let bodies = (0..LANES).map(body).collect::<Result<Vec<_>, _>>()?;
+        let (mut bodies, _) = AnyStepper::abreast(&bodies).ok_or("no lanes")?;
+        Ok(move |steps| {
+            bodies.run(u64::from(steps / LANES));
+            Ok(0)
+        })
+    })
 }
 
 fn started<S>(scene: S, (attitude, velocity): Start<S>) -> Result<(Stepper<S>, StateOf<S>), Failure>
