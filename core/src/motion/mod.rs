@@ -22,7 +22,7 @@ mod stepper;
 mod abreast;
 mod any;
 mod batch;
-mod declared;
+pub(crate) mod declared;
 #[macro_use]
 mod delegated;
 mod erasure;
@@ -36,7 +36,7 @@ mod propagator;
 mod report;
 mod right_hand_side;
 mod state;
-mod summation;
+pub(crate) mod summation;
 
 pub use crate::groups::layout::{Factor, FactorKind};
 pub use abreast::{Abreast, Joinable};

@@ -1,6 +1,6 @@
 //! The constants of a step of one length, and the bounds that a usual solve stays within.
 
-use liestep::__private::safe;
+use liestep::__private::{RATIO, safe};
 use liestep::SetupError;
 use liestep::numbers::Real;
 use liestep_derivation::Array;
@@ -20,9 +20,6 @@ pub(super) struct StepConstants {
     /// The square of a right side far beyond those of steps that have a solution.
     pub(super) largest_target: f64,
 }
-
-/// The rounding of a right side below this fraction of `1/ε` times the Jacobian at rest doesn't affect that.
-const RATIO: f64 = 1.0 / 4096.0;
 
 impl StepConstants {
     /// Checks the numbers and the step, and folds the constants.

@@ -1,6 +1,6 @@
 //! One step of one length: its increment from a state, by the usual solve or with care, and the rare work after it.
 
-use liestep::__private::MAX_ITERATIONS;
+use liestep::__private::{MAX_ITERATIONS, STEPS_BETWEEN_CHECKS, STEPS_BETWEEN_SEVERAL, TOLERATED};
 use liestep::StepError;
 use liestep_derivation::Array;
 
@@ -11,13 +11,6 @@ use super::iteration::{Iterates, Problem};
 use super::limit::Limit;
 use super::linear::are_finite;
 use crate::code::{Backend, StepInputs};
-
-/// The numbers of steps between two corrections of the attitude's rounding errors, for one and for several rotations, whose
-/// internal forces cancel only as far as they are rotations; powers of two.
-const STEPS_BETWEEN_CHECKS: u64 = 1024;
-const STEPS_BETWEEN_SEVERAL: u64 = 64;
-/// The tolerated distance of a single attitude from its group, in units of rounding.
-const TOLERATED: f64 = 2048.0;
 
 /// A declaration's code with numbers for its parameters.
 #[derive(Clone, Copy)]
@@ -202,7 +195,8 @@ impl<'a, B: Backend<f64>> Numbered<'a, B> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
     pub(super) fn is_due(self, steps: f64) -> bool {
         let between = if self.codes.rotations > 1 { STEPS_BETWEEN_SEVERAL } else { STEPS_BETWEEN_CHECKS };
-        (steps as u64) & (between - 1) == 0
+        const { assert!(STEPS_BETWEEN_CHECKS.is_power_of_two() && STEPS_BETWEEN_SEVERAL.is_power_of_two()) };
+        (steps as u64) & (u64::from(between) - 1) == 0
     }
 
     /// The rare work after the first step of a single step, and after a fixed number of further ones.
