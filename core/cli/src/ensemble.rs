@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 use clap::ArgMatches;
 use liestep::motion::Moment;
 use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
-use liestep_scene::{Column, LeastWhole, MemberEvent, Mistake, Rotating, SceneEnsemble, SceneFile, Spread, Whole};
+use liestep_scene::{Column, MemberEvent, Mistake, Rotating, SceneEnsemble, SceneFile, Spread};
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
@@ -73,25 +73,18 @@ fn made(
     let drawn_of = |own: &SceneEnsemble, member: &Member<'_>| {
         own.member(&mut |name: &str, spread: Spread| number(member, name, spread))
     };
-    macro_rules! in_lanes {
-        ($whole:ty) => {
-            if let Some(whole) = scene.whole() {
-                let (whole, own): ($whole, _) = (whole, drawn.clone());
-                let make = move |member: &Member<'_>| {
-                    drawn_of(&own, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed)
-                };
-                // Chunks are whole lanes: a 64th of the members, at most a second's work but at least a 4096th of the
-                // members, and at most a million rows.
-                let rows = drawn.every.map_or(1, |every| steps / every + 2);
-                let share = drawn.members.div_ceil(64).min((1 << 24) / steps.max(1)).max(drawn.members >> 12);
-                let chunk = share.min((1 << 20) / rows).next_multiple_of(8).max(8);
-                let members = Ensemble::new(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
-                return finished(path, scene, drawn, members, local, store);
-            }
-        };
+    if let Some(whole) = scene.whole() {
+        let own = drawn.clone();
+        let make =
+            move |member: &Member<'_>| drawn_of(&own, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed);
+        // Chunks are whole lanes: a 64th of the members, at most a second's work but at least a 4096th of the members, and at
+        // most a million rows.
+        let rows = drawn.every.map_or(1, |every| steps / every + 2);
+        let share = drawn.members.div_ceil(64).min((1 << 24) / steps.max(1)).max(drawn.members >> 12);
+        let chunk = share.min((1 << 20) / rows).next_multiple_of(8).max(8);
+        let members = Ensemble::abreast(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
+        return finished(path, scene, drawn, members, local, store);
     }
-    in_lanes!(LeastWhole);
-    in_lanes!(Whole);
     let own = drawn.clone();
     let make = move |member: &Member<'_>| drawn_of(&own, member).and_then(|scene| scene.stepper()).map_err(failed);
     finished(path, scene, drawn, Ensemble::one_by_one(&drawn.text, drawn.members, steps, make), local, store)

@@ -9,7 +9,7 @@ use liestep::mechanics::{Effect, Inertia, KineticPart, OnlyKicks, Term as _, Wit
 use liestep::methods::SplittingScheme;
 use liestep::motion::AnyStepper;
 use liestep::with::{Method, Scheme, densities};
-use liestep::{SO3, StateOf, Stepper};
+use liestep::{SO3, Stepper};
 use liestep_late::{Declaration, Late, LateError, Slots};
 use nalgebra::Vector3;
 
@@ -28,13 +28,9 @@ type Program<K, W = Seen> = Late<SO3, W, K, Backend>;
 /// The program of a file's effects and its force.
 type Rest<W = Seen> = Program<WithoutKinetic, W>;
 /// The program of all terms of a scene.
-pub type Whole<W = Seen> = Program<WithKinetic, W>;
-
-/// A [`Whole`] with at most one advected vector. Its states are shorter, so its steps are faster.
-pub type LeastWhole = Whole<V>;
-
-/// The stepper of a member in lanes, and its initial state.
-pub type MemberInLanes<W> = (Stepper<Whole<W>>, StateOf<Whole<W>>);
+type All = Program<WithKinetic, Seen>;
+/// The step of all terms of a scene as data.
+pub type Whole = liestep_late::Whole<Backend>;
 
 /// The kinetic term: a Lagrangian of the file's own, or a library body by its text; with its parameters.
 #[derive(Clone)]
@@ -68,38 +64,42 @@ impl Moving {
     }
 }
 
-/// The program of this body, if any, and of the file's effects and force. Each sum is derived once per process.
+/// The sum of this body, if any, and of the file's effects and force. Each is derived once per process.
+fn sum(file: &SceneFile, body: Option<&Moving>) -> Result<Option<&'static Declaration>, LateError> {
+    let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
+    let (body_itself, own) = (body.map(Moving::declaration), file.force.iter().map(|own| Ok(own.declaration)));
+    let terms = body_itself.into_iter().chain(listed).chain(own).collect::<Result<Vec<_>, _>>()?;
+    if terms.is_empty() { Ok(None) } else { Declaration::sum(&terms).map(Some) }
+}
+
+/// The program of this sum.
 fn program<K: KineticPart, W: Advected<SO3> + Slots>(
     file: &SceneFile,
     J: &Inertia,
     body: Option<&Moving>,
 ) -> Result<Option<Program<K, W>>, LateError> {
-    let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
-    let (body_itself, own) = (body.map(Moving::declaration), file.force.iter().map(|own| Ok(own.declaration)));
-    let terms = body_itself.into_iter().chain(listed).chain(own).collect::<Result<Vec<_>, _>>()?;
-    if terms.is_empty() {
-        return Ok(None);
-    }
-    Late::of(Declaration::sum(&terms)?)?.with_all(&numbers(file, J, body, 0.0)).map(Some)
+    let Some(sum) = sum(file, body)? else { return Ok(None) };
+    Late::of(sum)?.with_all(&numbers(file, J, body, 0.0)).map(Some)
 }
 
-/// The program of a scene for members of an ensemble in lanes. `None` for another method, for varying steps, for
-/// effects along orbits, and for terms that need another `W`.
-pub(crate) fn whole<W: Advected<SO3> + Slots>(file: &SceneFile) -> Option<Whole<W>> {
+/// The step of a scene for members of an ensemble in lanes. `None` for another method, for varying steps, and for effects
+/// along orbits.
+pub(crate) fn whole(file: &SceneFile) -> Option<Whole> {
     let is_of_one_kind = matches!(file.run.method, Scheme::Step) && !file.has_steps_of_its_own();
     let J = inertia(file).ok().filter(|_| is_of_one_kind && file.turning().next().is_none())?;
-    program(file, &J, Moving::of(file, J).ok().as_ref()).ok()?
+    let (Pace::Step { step, .. }, body) = (file.run.pace, Moving::of(file, J).ok()?) else { return None };
+    let sum = sum(file, Some(&body)).ok()??;
+    Whole::of(sum, &sum.described(&numbers(file, &J, Some(&body), 0.0)).ok()?, step, Method::default()).ok()
 }
 
-/// The stepper of the program with this file's numbers, and the initial state.
-pub(crate) fn member<W: Advected<SO3> + Slots>(file: &SceneFile, whole: &Whole<W>) -> Result<MemberInLanes<W>, Stop> {
+/// The stepper of a scene's step with this file's numbers, and the initial state.
+pub(crate) fn member(file: &SceneFile, whole: &Whole) -> Result<MemberStart, Stop> {
     let Pace::Step { step, .. } = file.run.pace else { return Err(nothing()) };
     file.check_kicks()?;
     let J = inertia(file)?;
-    let numbers = numbers(file, &J, Some(&Moving::of(file, J)?), 0.0);
-    let stepper = whole.clone().with_all(&numbers).map_err(late_error)?;
-    let stepper = Stepper::new(stepper, step).map_err(Stop::Setup)?;
-    let state = stepper.start(file.start.attitude, file.start.velocity).map_err(Stop::Start)?;
+    let numbers = whole.declaration().described(&numbers(file, &J, Some(&Moving::of(file, J)?), 0.0));
+    let stepper = whole.with(&numbers.map_err(late_error)?, step).map_err(Stop::Setup)?.into_joinable();
+    let state = stepper.start_at(SO3::from(file.start.attitude), file.start.velocity).map_err(Stop::Start)?;
     Ok((stepper, state))
 }
 
@@ -181,7 +181,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
         return with_exact_body(file, &J, h);
     }
     if let Some(Density::Turn(floor)) = file.run.density {
-        let whole: Option<Whole> = program(file, &J, Some(&Moving::of(file, J)?)).map_err(late_error)?;
+        let whole: Option<All> = program(file, &J, Some(&Moving::of(file, J)?)).map_err(late_error)?;
         let whole = whole.ok_or_else(nothing)?;
         let rate = densities::turn(whole.clone(), floor.value);
         return any!(Stepper::new(whole, h).map(|stepper| stepper.with_density(rate)));
@@ -192,7 +192,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
     let (turns, seen) = (file.turning().next().is_some(), Rc::new(file.clone()));
     if file.lagrangian.is_some() || file.kinetic() != Kinetic::Rigid {
         let body = Moving::of(file, J)?;
-        let whole: Option<Whole> = program(file, &J, Some(&body)).map_err(late_error)?;
+        let whole: Option<All> = program(file, &J, Some(&body)).map_err(late_error)?;
         let Some(whole) = whole else { return Err(nothing()) };
         if !turns {
             return method.on_any_group(whole, h).map_err(Stop::Setup);

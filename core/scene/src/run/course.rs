@@ -1,8 +1,7 @@
 //! Samples, steps and event functions for the run of one body.
 
-use liestep::mechanics::Effect;
-use liestep::motion::{AnyMotion, AnyState, AnyStepper, Integrator, Moment, Plan};
-use liestep::{SO3, Stepper, recording};
+use liestep::motion::{AnyMotion, AnyState, AnyStepper, Integrator, Moment};
+use liestep::{SO3, recording};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::file::event::{Direction, Event, Quantity};
@@ -13,7 +12,7 @@ use crate::run::make::{Course, EventFunction};
 /// The stepper of a scene, and its initial state.
 pub type MemberStart = (AnyStepper, AnyState);
 
-/// An integrator of a body on SO(3): a typed stepper in lanes, or one whose states are numbers.
+/// An integrator of a body on SO(3).
 pub trait Rotating: Integrator<Scalar = f64> {
     /// The attitude, body to space.
     fn attitude(motion: &Self::Motion) -> SO3;
@@ -36,24 +35,6 @@ impl Rotating for AnyStepper {
 
     fn rate(velocity: Vec<f64>) -> Vector3<f64> {
         Vector3::from_column_slice(&velocity)
-    }
-}
-
-impl<S, P> Rotating for Stepper<S, P>
-where
-    S: Effect<Scalar = f64, Group = SO3>,
-    P: Plan<S>,
-{
-    fn attitude(motion: &Self::Motion) -> SO3 {
-        motion.attitude()
-    }
-
-    fn momentum(motion: &Self::Motion) -> Vector3<f64> {
-        motion.momentum()
-    }
-
-    fn rate(velocity: Vector3<f64>) -> Vector3<f64> {
-        velocity
     }
 }
 

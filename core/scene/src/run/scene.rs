@@ -2,12 +2,10 @@
 
 use std::error::Error;
 
-use liestep::groups::Advected;
 use liestep::motion::Moment;
 use liestep::recording::{self, Csv, Sink};
 use liestep::with::Scheme;
-use liestep::{SO3, SetupError, StepError};
-use liestep_late::Slots;
+use liestep::{SetupError, StepError};
 
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
@@ -16,7 +14,7 @@ use crate::file::mistake::Mistake;
 use crate::file::quantity::short;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
-use crate::run::choose::{self, MemberInLanes, Whole};
+use crate::run::choose::{self, Whole};
 use crate::run::course::{MemberStart, Rotating, sample};
 use crate::run::make::{Listeners, Run, Stop, fast_turn};
 
@@ -91,21 +89,20 @@ impl SceneFile {
         choose::stepper(self).map_err(|stop| self.mistake(stop))
     }
 
-    /// The scene as one program, for members of its ensemble in lanes. `None` for another method, for varying steps,
-    /// for effects along orbits, and for terms that need another `W`: try [`LeastWhole`](crate::LeastWhole)
-    /// first.
+    /// The scene's step as data, for members of its ensemble in lanes. `None` for another method, for varying steps, and for
+    /// effects along orbits.
     #[must_use]
-    pub fn whole<W: Advected<SO3> + Slots>(&self) -> Option<Whole<W>> {
+    pub fn whole(&self) -> Option<Whole> {
         choose::whole(self)
     }
 
-    /// The stepper and the initial state for lanes, from the program of a file that differs from this one in numbers
+    /// The stepper and the initial state for lanes, from the step of a file that differs from this one in numbers
     /// alone.
     ///
     /// # Errors
     ///
     /// The errors of [`stepper`](Self::stepper).
-    pub fn in_lanes<W: Advected<SO3> + Slots>(&self, whole: &Whole<W>) -> Result<MemberInLanes<W>, Mistake> {
+    pub fn in_lanes(&self, whole: &Whole) -> Result<MemberStart, Mistake> {
         choose::member(self, whole).map_err(|stop| self.mistake(stop))
     }
 
