@@ -59,6 +59,20 @@ pub struct UsualStep<'a, C> {
 }
 
 impl<'a, C> UsualStep<'a, C> {
+    /// The same step with other code for each program.
+    #[must_use]
+    pub fn map<D>(&self, other: impl Fn(&'a C) -> &'a D) -> UsualStep<'a, D> {
+        UsualStep {
+            sizes: self.sizes,
+            is_product: self.is_product,
+            target: other(self.target),
+            iterate: other(self.iterate),
+            again: other(self.again),
+            finish: other(self.finish),
+            safe: self.safe.map(other),
+        }
+    }
+
     /// All programs.
     pub fn programs(&self) -> impl Iterator<Item = &'a C> {
         [self.target, self.iterate, self.again, self.finish].into_iter().chain(self.safe)

@@ -8,9 +8,9 @@ use std::mem::MaybeUninit;
 use liestep_late::{Array, Given, Program, StepInputs, UsualStep};
 use simba::simd::AutoF64x8;
 
+use crate::function::Literals;
 use crate::memory::Pages;
-use crate::translated::{self, Literals};
-use crate::{Both, step};
+use crate::{step, translated};
 
 /// The number of lanes of an ensemble.
 pub(crate) const LANES: usize = 8;
@@ -113,13 +113,13 @@ impl fmt::Debug for StepFunction {
 }
 
 impl StepFunction {
-    pub(crate) fn of(usual: &UsualStep<'_, Both>) -> Result<Self, String> {
+    pub(crate) fn of(usual: &UsualStep<'_, Program>) -> Result<Self, String> {
         let (code, literals) = step::code(usual)?;
         let pages = Pages::of(&code)?;
         // SAFETY: as above, for the signature of `StepEntry`, which is that of `step`.
         let entry = unsafe { std::mem::transmute::<*const u8, StepEntry>(pages.start()) };
         let least = |array: Array| {
-            let all = usual.programs().map(|both| translated::least(&both.program)[array as usize]);
+            let all = usual.programs().map(|program| translated::least(program)[array as usize]);
             all.max().unwrap_or(0)
         };
         let (constants, parameters) = (least(Array::Constants), least(Array::Parameters));

@@ -17,14 +17,16 @@
 //!
 //! # Inside
 //!
-//! `lib → called → {step → translated → piece → registers, memory}`: `translated` generates the code of a program, `step` that
-//! of a whole step, `piece` orders operations, `registers` assigns values to registers and memory. Everything unsafe is in
-//! `called` and `memory`.
+//! `lib → called → {memory, {step, translated} → {piece, function} → operation → registers}`: `translated` generates the code
+//! of a program, `step` that of a whole step, `piece` orders operations, `registers` assigns values to registers and memory.
+//! Everything unsafe is in `called` and `memory`.
 
 #![cfg(feature = "cranelift")]
 
 mod called;
+mod function;
 mod memory;
+mod operation;
 mod piece;
 mod registers;
 mod step;
@@ -97,7 +99,7 @@ impl<T: Real> Backend<T> for Machine {
     type Code = Both;
 
     fn codes(programs: &[&Program]) -> Result<Vec<Both>, LateError> {
-        translated::isa().map_err(LateError::Machine)?;
+        function::isa().map_err(LateError::Machine)?;
         let interpreted = <Interpreter as Backend<f64>>::codes(programs)?;
         let both = |(&program, interpreted): (&&Program, Code)| Both {
             program: program.clone(),
@@ -123,14 +125,14 @@ impl<T: Real> Backend<T> for Machine {
         match compilation.function.get() {
             Some(function) => function.call(inputs, state),
             None => {
-                compilation.run(FEW_STEPS, || StepFunction::of(usual));
+                compilation.run(FEW_STEPS, || StepFunction::of(&usual.map(|both| &both.program)));
                 0
             }
         }
     }
 
     fn prepare_step(usual: &UsualStep<'_, Both>) -> bool {
-        usual.finish.of_step.make(|| StepFunction::of(usual));
+        usual.finish.of_step.make(|| StepFunction::of(&usual.map(|both| &both.program)));
         usual.finish.of_step.function.get().is_some()
     }
 

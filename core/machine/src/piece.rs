@@ -6,8 +6,8 @@ use cranelift_codegen::ir::{InstBuilder as _, Value};
 use cranelift_frontend::FunctionBuilder;
 use liestep_late::{Operation, Program, Source};
 
+use crate::operation::{Callee, both, result};
 use crate::registers::{Place, Registers};
-use crate::translated::{Callee, both, result};
 
 /// The origin of a value.
 #[derive(Clone, Copy)]

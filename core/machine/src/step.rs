@@ -15,10 +15,10 @@ use cranelift_frontend::FunctionBuilder;
 use liestep::__private::{MAX_ITERATIONS, NEAR_ENOUGH, SETTLED, SUFFICIENT, safe};
 use liestep_late::{Array, Program, Sizes, Source, UsualStep};
 
-use crate::Both;
+use crate::function::{Literals, code as code_of, flags, offset};
+use crate::operation::Callee;
 use crate::piece::{Piece, Writing};
 use crate::registers::{Frame, Place, Registers};
-use crate::translated::{Callee, Literals, code as code_of, flags, offset};
 
 /// The numbers that decisions compare with.
 struct Bounds {
@@ -47,10 +47,10 @@ impl Bounds {
 /// The machine code of a usual step: a function of the state, the constants, the parameters, and the two bounds of
 /// [`StepInputs`](liestep_late::StepInputs). It returns twice the number of iterations, plus one if the increment is far from
 /// the identity; or zero.
-pub(crate) fn code(usual: &UsualStep<'_, Both>) -> Result<(Vec<u8>, Literals), String> {
+pub(crate) fn code(usual: &UsualStep<'_, Program>) -> Result<(Vec<u8>, Literals), String> {
     let bounds = Bounds::new();
     let mut numbers: Vec<f64> = bounds.list().to_vec();
-    numbers.extend(usual.programs().flat_map(|both| &both.program.literals));
+    numbers.extend(usual.programs().flat_map(|program| &program.literals));
     numbers.sort_by(f64::total_cmp);
     numbers.dedup_by_key(|number| number.to_bits());
     let literals = Literals::of(&numbers);
@@ -84,7 +84,7 @@ pub(crate) fn code(usual: &UsualStep<'_, Both>) -> Result<(Vec<u8>, Literals), S
 
 struct Step<'a, 'b> {
     builder: &'a mut FunctionBuilder<'b>,
-    usual: &'a UsualStep<'a, Both>,
+    usual: &'a UsualStep<'a, Program>,
     callee: &'a Callee,
     pointer: Type,
     state: Value,
@@ -202,14 +202,14 @@ impl Step<'_, '_> {
     fn first(&mut self, head: Block) -> Result<(), String> {
         let (usual, n) = (self.usual, self.sizes().n);
         let mut piece = Piece::default();
-        let target = self.append(&mut piece, &usual.target.program)?;
+        let target = self.append(&mut piece, usual.target)?;
         piece.need(&target);
         for (at, &value) in target[..n].iter().enumerate() {
             piece.store(value, None, self.target(at)?);
         }
         piece.take(&target[n..=n]);
         if let Some(safe) = usual.safe {
-            let outputs = self.append(&mut piece, &safe.program)?;
+            let outputs = self.append(&mut piece, safe)?;
             piece.need(&outputs);
             piece.take(self.determinants(&outputs));
         }
@@ -247,14 +247,14 @@ impl Step<'_, '_> {
             Array::Half => Ok(piece.given((half, offset(source.at, 1)?))),
             _ => Ok(piece.given(self.place(source)?)),
         };
-        let next = piece.append(&usual.iterate.program, input, |_, number| self.literal(number))?;
+        let next = piece.append(usual.iterate, input, |_, number| self.literal(number))?;
         let input = |piece: &mut Piece, source: Source| match source.array {
             Array::Half => next.get(source.at).copied().ok_or("an iterate is missing".to_owned()),
             Array::Factors => next.get(n + 2 + source.at).copied().ok_or("a factor is missing".to_owned()),
             _ => Ok(piece.given(self.place(source)?)),
         };
         piece.need(&next);
-        let second = piece.append(&usual.again.program, input, |_, number| self.literal(number))?;
+        let second = piece.append(usual.again, input, |_, number| self.literal(number))?;
         for (at, &value) in next[..n].iter().enumerate() {
             piece.store(value, None, self.half(at)?);
         }
@@ -322,7 +322,7 @@ impl Step<'_, '_> {
 
         self.builder.switch_to_block(finish);
         let mut piece = Piece::default();
-        let outputs = self.append(&mut piece, &usual.finish.program)?;
+        let outputs = self.append(&mut piece, usual.finish)?;
         let (next, others) = outputs.split_at(sizes.state() - 1);
         piece.need(others);
         piece.take(others);

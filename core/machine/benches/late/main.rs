@@ -17,6 +17,7 @@ use declarations::{
     Gyrostat, LogTop, Magnet, OrbitingBody, RodElement, Satellite, SixthOrderTop, SuspendedLoad, TetheredPlate,
     TopOnCart, TwoBodies, UnderwaterBody,
 };
+use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::{Advected, CayleyRetraction, Retraction};
 use liestep::mechanics::{Effect, Inertia, Regular, WithKinetic};
 use liestep::motion::{AnyStepper, Batch, Batchable, Integrator, Propagator as _};
@@ -86,14 +87,13 @@ where
 }
 
 /// The declaration in lanes.
-fn lanes(scene: &FullTop) -> Result<[Kernel; 4], Failure> {
-    let (interpreted, machine): (LateTop<Interpreter>, LateTop<Machine>) = (Late::like(scene)?, Late::like(scene)?);
-    let declaration = machine.declaration();
+fn lanes(scene: &FullTop) -> Result<[Kernel; 3], Failure> {
+    let declaration = Declaration::parse(FullTop::DECLARATION)?;
     let values = declaration.described(&numbers(scene))?;
+    let FullTop { J_d, m, g, rho, up } = *scene;
     Ok([
-        in_lanes("in lanes of eight", interpreted),
-        slices_in_lanes::<Interpreter>("whole step, in lanes", declaration, values.clone()),
-        in_lanes("machine code in lanes", machine),
+        in_lanes("compiled sum, in lanes of eight", RigidBody { J_d } + Gravity { m, g, rho, up }),
+        slices_in_lanes::<Interpreter>("whole step, interpreted in lanes", declaration, values.clone()),
         slices_in_lanes::<Machine>("whole step, machine code in lanes", declaration, values),
     ])
 }
