@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
 
 use clap::ArgMatches;
 use liestep::motion::Moment;
@@ -133,10 +133,13 @@ fn plan<M: Rotating + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, members
         plan = plan.chunks_of(members);
     }
     let names: Vec<_> = columns(scene).map(|(_, _, name)| name).collect();
-    let all = scene.columns().to_vec();
-    plan = plan.keep_named(&names, move |run, row| {
-        let numbers = SceneFile::numbers(&all, &Moment::of_step(run.stepper, run.state));
-        row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
+    let own = Arc::new(SceneFile::clone(scene));
+    plan = plan.keep_named(&names, {
+        let own = Arc::clone(&own);
+        move |run, row| {
+            let numbers = own.numbers(own.columns(), &Moment::of_step(run.stepper, run.state));
+            row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
+        }
     });
     let draws: Vec<(String, Spread)> = drawn.draws().map(|(name, spread)| (name.to_owned(), spread)).collect();
     let (names, seed) = (draws.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), drawn.seed);
@@ -149,14 +152,15 @@ fn plan<M: Rotating + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, members
     });
     // A quaternion and its opposite are the same attitude, so means of them have no meaning.
     for (column, place, name) in columns(scene).filter(|(column, ..)| column.key() != "quaternion") {
+        let own = Arc::clone(&own);
         plan = plan.reduce(name, Reduction::Moments, move |run| {
-            let numbers = SceneFile::numbers(&[column], &Moment::of_step(run.stepper, run.state));
+            let numbers = own.numbers(std::slice::from_ref(&column), &Moment::of_step(run.stepper, run.state));
             numbers.get(place).copied().unwrap_or(f64::NAN)
         });
     }
     scene
         .member_events()
-        .fold(plan.keep(["t"], |run| [run.stepper.time(run.state)]), |plan, event| plan.section(section(scene, event)))
+        .fold(plan.keep(["t"], |run| [run.stepper.time(run.state)]), |plan, event| plan.section(section(&own, event)))
 }
 
 /// The number that a member draws.
@@ -168,21 +172,25 @@ fn number(member: &Member<'_>, name: &str, spread: Spread) -> f64 {
 }
 
 /// The section of an event: its times, and the scene's columns then.
-fn section<M: Rotating + 'static>(scene: &SceneFile, (name, event, function, stops): MemberEvent<M>) -> Section<M> {
+fn section<M: Rotating + 'static>(
+    scene: &Arc<SceneFile>,
+    (name, event, function, stops): MemberEvent<M>,
+) -> Section<M> {
     let section = Section::new(event, function);
     let section = if stops { section.until() } else { section };
     let section = section.keep([&format!("{name}_t")], |now| [now.time()]);
     columns(scene).fold(section, |section, (column, place, own)| {
+        let scene = Arc::clone(scene);
         section.keep([&format!("{name}_{own}")], move |now| {
-            [SceneFile::numbers(&[column], now).get(place).copied().unwrap_or(f64::NAN)]
+            [scene.numbers(std::slice::from_ref(&column), now).get(place).copied().unwrap_or(f64::NAN)]
         })
     })
 }
 
 /// The numbers of the scene's columns: each with its column, its place there and its name.
-fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &'static str)> + '_ {
-    let numbers = |column: Column| column.names().iter().enumerate().map(move |(place, name)| (column, place, *name));
-    scene.columns().iter().copied().flat_map(numbers)
+fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &str)> {
+    let numbers = |column| Column::names(column).enumerate().map(|(place, name)| (Column::clone(column), place, name));
+    scene.columns().iter().flat_map(numbers)
 }
 
 fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, report: &Report, (is_share, folder): (bool, &str)) -> String {
