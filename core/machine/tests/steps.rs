@@ -57,6 +57,10 @@ struct Seen {
     iterations: BTreeMap<u32, u32>,
 }
 
+fn of<B: Backend<f64>>(text: &'static Declaration, all: &[f64], h: f64, method: &str) -> Result<Whole<B>, WholeError> {
+    Whole::of(text, all, h, method.parse::<Method>().expect("a method"))
+}
+
 /// Compares the steps of a declaration with random numbers.
 fn compare(declaration: &'static Declaration, method: &str, seed: u64, seen: &mut Seen) {
     let mut random = Random::new(seed);
@@ -65,14 +69,6 @@ fn compare(declaration: &'static Declaration, method: &str, seed: u64, seen: &mu
     let velocity: Vec<f64> = (0..n).map(|_| random.signed()).collect();
     for (h, steps) in [(0.01, 1100), (-0.01, 100), (0.15, 100), (0.4, 100), (1.5, 30), (0.0, 3)] {
         let what = format!("{} by {method} of {h} s", declaration.name);
-        fn of<B: Backend<f64>>(
-            text: &'static Declaration,
-            all: &[f64],
-            h: f64,
-            method: &str,
-        ) -> Result<Whole<B>, WholeError> {
-            Whole::of(text, all, h, method.parse::<Method>().expect("a method"))
-        }
         let (one, other) =
             (of::<Interpreter>(declaration, &values, h, method), of::<Machine>(declaration, &values, h, method));
         let (Ok(one), Ok(other)) = (&one, &other) else {
@@ -89,17 +85,13 @@ fn compare(declaration: &'static Declaration, method: &str, seed: u64, seen: &mu
             let (report, found) = (one.step(&mut expected), other.step(&mut state));
             assert_eq!(found, report, "step {step} of {what}");
             assert_eq!(bits(&state), bits(&expected), "step {step} of {what}");
-            match report {
-                Ok(report) => {
-                    seen.steps += 1;
-                    seen.with_care += u32::from(report.iterations > 20);
-                    *seen.iterations.entry(report.iterations).or_default() += 1;
-                }
-                Err(_) => {
-                    seen.errors += 1;
-                    break;
-                }
-            }
+            let Ok(report) = report else {
+                seen.errors += 1;
+                break;
+            };
+            seen.steps += 1;
+            seen.with_care += u32::from(report.iterations > 20);
+            *seen.iterations.entry(report.iterations).or_default() += 1;
         }
     }
 }
