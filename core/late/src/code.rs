@@ -29,11 +29,13 @@ pub trait Backend<T: Real>: Copy + Debug + 'static {
     /// Makes a usual step of a state in one piece, where the back end can: twice the number of its iterations, plus one if its
     /// increment is far from the identity; or zero, without a change, if the driver has to run the programs.
     #[inline]
+    #[must_use]
     fn step(_: &UsualStep<'_, Self::Code>, _: StepInputs<'_, T>, _: &mut [T]) -> u64 {
         0
     }
 
     /// Compiles a step now that is otherwise compiled after some of them; returns whether there is one.
+    #[must_use]
     fn prepare_step(_: &UsualStep<'_, Self::Code>) -> bool {
         false
     }

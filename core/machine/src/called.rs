@@ -116,7 +116,8 @@ impl StepFunction {
     pub(crate) fn of(usual: &UsualStep<'_, Program>) -> Result<Self, String> {
         let (code, literals) = step::code(usual)?;
         let pages = Pages::of(&code)?;
-        // SAFETY: as above, for the signature of `StepEntry`, which is that of `step`.
+        // SAFETY: the pages begin with code that `step` has generated for the signature of `StepEntry` and the calling
+        // convention of C; they are executable, and stay so as long as this function has them.
         let entry = unsafe { std::mem::transmute::<*const u8, StepEntry>(pages.start()) };
         let least = |array: Array| {
             let all = usual.programs().map(|program| translated::least(program)[array as usize]);

@@ -122,13 +122,11 @@ impl<T: Real> Backend<T> for Machine {
     #[inline]
     fn step(usual: &UsualStep<'_, Both>, inputs: StepInputs<'_, T>, state: &mut [T]) -> u64 {
         let compilation = &usual.finish.of_step;
-        match compilation.function.get() {
-            Some(function) => function.call(inputs, state),
-            None => {
-                compilation.run(FEW_STEPS, || StepFunction::of(&usual.map(|both| &both.program)));
-                0
-            }
+        if let Some(function) = compilation.function.get() {
+            return function.call(inputs, state);
         }
+        compilation.run(FEW_STEPS, || StepFunction::of(&usual.map(|both| &both.program)));
+        0
     }
 
     fn prepare_step(usual: &UsualStep<'_, Both>) -> bool {

@@ -72,10 +72,10 @@ impl Arena {
     fn give_back(&mut self, Pages { offset, size }: &Pages) {
         self.used -= size;
         let (mut begin, mut end) = (*offset, offset + size);
-        if let Some((&before, &length)) = self.free.range(..begin).next_back().filter(|(at, size)| *at + *size == begin)
-        {
+        let before = self.free.range(..begin).next_back().map(|(&before, &length)| (before, before + length));
+        if let Some((before, _)) = before.filter(|(_, end)| *end == begin) {
             self.free.remove(&before);
-            (begin, _) = (before, length);
+            begin = before;
         }
         if let Some(length) = self.free.remove(&end) {
             end += length;

@@ -50,13 +50,12 @@ impl Piece {
 
     /// The value at a place.
     pub(crate) fn given(&mut self, place: Place) -> usize {
-        match self.given.get(&place) {
-            Some(&value) => value,
-            None => {
-                let value = self.push(Origin::Given(place));
-                *self.given.entry(place).or_insert(value)
-            }
+        if let Some(&value) = self.given.get(&place) {
+            return value;
         }
+        let value = self.push(Origin::Given(place));
+        self.given.insert(place, value);
+        value
     }
 
     /// The outputs of a program with these inputs and literals.
@@ -102,10 +101,14 @@ impl Piece {
     pub(crate) fn need(&mut self, wanted: &[usize]) {
         let last = wanted.iter().copied().max().unwrap_or(0);
         let mut is_needed = vec![false; last + 1];
-        wanted.iter().for_each(|&value| is_needed[value] = true);
+        for &value in wanted {
+            is_needed[value] = true;
+        }
         for value in (0..=last).rev().filter(|&value| !self.is_made[value]) {
             if let Some(operands) = self.operands(value).filter(|_| is_needed[value]) {
-                operands.iter().for_each(|&operand| is_needed[operand] = true);
+                for operand in operands {
+                    is_needed[operand] = true;
+                }
             }
         }
         self.make((0..=last).filter(|&value| is_needed[value]).collect());

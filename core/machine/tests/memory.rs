@@ -53,7 +53,7 @@ fn code_has_one_arena_and_bounded_frames() {
     let maps = mappings();
     let all: Vec<_> = (0..10_000_u32).map(|number| compiled(&product(number.into()))).collect();
     let taken = used_memory() - before;
-    assert!(taken >= 10_000 * 64 && taken <= MOST_MEMORY, "{taken} bytes");
+    assert!((10_000 * 64..=MOST_MEMORY).contains(&taken), "{taken} bytes");
     for (number, code) in (0..).zip(&all).step_by(997) {
         assert_eq!(run::<Machine>(code, &[0.5], 1), [0.5 * f64::from(number)]);
     }

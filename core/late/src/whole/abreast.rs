@@ -190,7 +190,8 @@ impl<B: BackendInLanes> Bodies<B> {
             let all = others[1..].iter().map(|near| (*near * Eight::splat(times * times)).simd_lt(one));
             all.fold(Mask::<Eight>::splat(true), |all, near| all & near)
         };
-        let (is_finite, is_far) = ((others[0] - others[0]).simd_eq(zero), !is_near(3.0));
+        // Zero times an infinity or a NaN is NaN.
+        let (is_finite, is_far) = ((others[0] * zero).simd_eq(zero), !is_near(3.0));
         let is_solved = settled & det.simd_gt(zero) & square[0].simd_lt(*largest);
         let usual = *running & is_solved & is_finite & (!is_far | is_near(2.0));
         // Near the fold coordinates change too fast for an extrapolation.
