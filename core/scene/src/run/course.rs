@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use liestep::groups::LieGroup as _;
 use liestep::motion::{AnyMotion, AnyState, AnyStepper, Integrator, Moment};
 use liestep::{SO3, recording};
 use nalgebra::{Matrix3, Vector3};
