@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::sync::{Arc, Mutex};
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
 
 use clap::ArgMatches;
 use liestep::motion::Moment;
@@ -179,7 +179,10 @@ fn number(member: &Member<'_>, name: &str, spread: Spread) -> f64 {
 }
 
 /// The section of an event: its times, and the scene's columns then.
-fn section<M: Rotating + 'static>(scene: &Arc<SceneFile>, (name, event, function, stops): MemberEvent<M>) -> Section<M> {
+fn section<M: Rotating + 'static>(
+    scene: &Arc<SceneFile>,
+    (name, event, function, stops): MemberEvent<M>,
+) -> Section<M> {
     let section = Section::new(event, function);
     let section = if stops { section.until() } else { section };
     let section = section.keep([&format!("{name}_t")], |now| [now.time()]);

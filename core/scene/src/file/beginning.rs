@@ -2,7 +2,7 @@
 
 use liestep::motion::{AnyState, AnyStepper, Factor, FactorKind, Integrator as _};
 use liestep::{SO3, SetupError};
-use nalgebra::{Matrix3, UnitQuaternion};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
@@ -50,7 +50,10 @@ impl Beginning {
         let mut all = Self::default();
         for ((name, factor), of) in group.increments.iter().zip(&group.factors).zip(&group.groups) {
             let Some(value) = table.get(name.as_str()) else {
-                return Err((value.span(), format!("missing field `{name}`: each factor has a start, as `{name} = {{ velocity = … }}`")));
+                return Err((
+                    value.span(),
+                    format!("missing field `{name}`: each factor has a start, as `{name} = {{ velocity = … }}`"),
+                ));
             };
             let Some(table) = value.get_ref().as_table() else {
                 return Err((value.span(), format!("`{name}` is a table with the start of this factor")));
@@ -86,9 +89,9 @@ impl Beginning {
     }
 
     /// The angular velocity on SO(3), rad/s; none if the momentum is given.
-    pub(crate) fn rate(&self) -> Option<nalgebra::Vector3<f64>> {
+    pub(crate) fn rate(&self) -> Option<Vector3<f64>> {
         match self.velocity[..] {
-            [x, y, z] if !self.is_by_momentum => Some(nalgebra::Vector3::new(x, y, z)),
+            [x, y, z] if !self.is_by_momentum => Some(Vector3::new(x, y, z)),
             _ => None,
         }
     }
@@ -118,9 +121,7 @@ impl Place<'_, '_> {
         let known: &[&str] = match (self.factor.kind, self.group) {
             (FactorKind::Translation(_), _) => &["position", "velocity", "momentum"],
             (_, "SE2") => &["attitude", "angle", "position", "velocity", "momentum"],
-            (_, "SE3") => {
-                &["attitude", "euler", "quaternion", "yaw_pitch_roll", "position", "velocity", "momentum"]
-            }
+            (_, "SE3") => &["attitude", "euler", "quaternion", "yaw_pitch_roll", "position", "velocity", "momentum"],
             _ => &["attitude", "velocity", "momentum"],
         };
         if let Some((key, _)) = self.table.iter().find(|(key, _)| !known.contains(&key.get_ref().as_ref())) {
@@ -189,7 +190,9 @@ impl Place<'_, '_> {
         }
         if ROTATIONS.iter().any(|key| self.table.contains_key(*key)) {
             let mut table = self.table.clone();
-            ["position", "velocity", "momentum"].iter().for_each(|key| drop(table.remove(*key)));
+            for key in ["position", "velocity", "momentum"] {
+                table.remove(key);
+            }
             let attitude: UnitQuaternion<f64> = self.read(table, true)?.attitude;
             for (at, entry) in by_rows(SO3::from(attitude).as_matrix()).into_iter().enumerate() {
                 entries[at / 3 * rows + at % 3] = entry;

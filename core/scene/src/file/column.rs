@@ -74,7 +74,12 @@ impl Column {
         ]);
         if is_rotation {
             let vertical = |first: &Sample, now: &Sample| (now.angular_momentum - first.angular_momentum).z;
-            all.push(Self::new("vertical-momentum-error", &["vertical_momentum_error"], "kg m²/s", SinceStart(vertical)));
+            all.push(Self::new(
+                "vertical-momentum-error",
+                &["vertical_momentum_error"],
+                "kg m²/s",
+                SinceStart(vertical),
+            ));
         }
         all.extend([
             of("momentum-error", one("momentum_error", unit_of_momentum), Change(in_space)),

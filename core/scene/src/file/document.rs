@@ -92,7 +92,9 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), Wrong> {
             return Err((at, message.to_owned()));
         }
         return match own().find(|one| !is_of_body(one)) {
-            Some(one) => Err((one.span.clone(), "a `body` is on `SO3`, and so are its own Lagrangians and forces".to_owned())),
+            Some(one) => {
+                Err((one.span.clone(), "a `body` is on `SO3`, and so are its own Lagrangians and forces".to_owned()))
+            }
             None => Ok(()),
         };
     }

@@ -5,8 +5,8 @@ use std::ops::Range;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::group::Group;
 use crate::file::column::Column;
+use crate::file::group::Group;
 use crate::file::mistake::{Wrong, advised};
 use crate::file::quantity::{Angle, Any, Energy, Number, Positive, Rate, Scalar};
 

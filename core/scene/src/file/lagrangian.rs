@@ -48,7 +48,8 @@ impl Declared {
 
     /// The inertia of a body's continuous limit at the identity attitude.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
-        let whole = Whole::<Backend>::of(self.declaration, &self.numbers, 1.0, liestep::with::Method::default()).ok()?;
+        let whole =
+            Whole::<Backend>::of(self.declaration, &self.numbers, 1.0, liestep::with::Method::default()).ok()?;
         let momentum = |velocity: Vector3<f64>| {
             let state = whole.start(Matrix3::identity().as_slice(), velocity.as_slice()).ok()?;
             Some(Vector3::from_column_slice(&state[whole.layout().momentum()]))
@@ -119,12 +120,7 @@ struct Text<'t, 'a> {
 }
 
 impl<'t, 'a> Text<'t, 'a> {
-    fn of(
-        table: &'t DeTable<'a>,
-        span: Range<usize>,
-        role: Role,
-        on: &mut Option<Place>,
-    ) -> Result<Self, Wrong> {
+    fn of(table: &'t DeTable<'a>, span: Range<usize>, role: Role, on: &mut Option<Place>) -> Result<Self, Wrong> {
         let own = [table.get("group"), table.get("generators")];
         let place = match (own, on.clone()) {
             ([None, None], Some(before)) => before,
@@ -133,8 +129,15 @@ impl<'t, 'a> Text<'t, 'a> {
         *on = Some(place.clone());
         let group_at = own[0].map_or_else(|| span.clone(), Spanned::span);
         let generators_at = own[1].map_or_else(|| group_at.clone(), Spanned::span);
-        let mut text =
-            Self { table, span, role, lines: Vec::new(), parameters: Vec::new(), increments: place.increments, has_a_pace: false };
+        let mut text = Self {
+            table,
+            span,
+            role,
+            lines: Vec::new(),
+            parameters: Vec::new(),
+            increments: place.increments,
+            has_a_pace: false,
+        };
         text.line(&format!("group{},", place.group), group_at);
         text.line(&place.generators, generators_at);
         text.read_head()?;
@@ -196,7 +199,8 @@ impl<'t, 'a> Text<'t, 'a> {
             }
         };
         self.line(&format!("{key} ="), at.clone());
-        let lines = expression.split('\n').map(|line| Line { text: line.to_owned(), at: at.clone(), is_verbatim: true });
+        let lines =
+            expression.split('\n').map(|line| Line { text: line.to_owned(), at: at.clone(), is_verbatim: true });
         self.lines.extend(lines);
         Ok(())
     }
@@ -229,17 +233,13 @@ impl<'t, 'a> Text<'t, 'a> {
             if self.role == Role::Force { ("force", "Force") } else { ("lagrangian", "Lagrangian") };
         let whole = format!("#[{attribute}(\n{}\n)]\nstruct {name} {{ {} }}", lines.join("\n"), fields.join(", "));
         let declaration = Declaration::parse(&whole).map_err(|error| self.mistake(error))?;
-        if self.has_a_pace && self.is_of_no_body(declaration) {
+        if self.has_a_pace && Late::<SO3, SeenWithEnergy, WithKinetic, Backend>::of(declaration).is_err() {
             let at = self.table.get("pace").map_or_else(|| self.span.clone(), Spanned::span);
             return Err((at, "a pace is that of a motion on `SO3` with three advected vectors at most".to_owned()));
         }
         let numbers = self.parameters.into_iter().flat_map(|one| one.numbers).collect();
         let (increments, has_a_pace, span) = (self.increments, self.has_a_pace, self.span);
         Ok(Declared { declaration, numbers, has_a_pace, increments, span })
-    }
-
-    fn is_of_no_body(&self, declaration: &'static Declaration) -> bool {
-        Late::<SO3, SeenWithEnergy, WithKinetic, Backend>::of(declaration).is_err()
     }
 
     /// The first mistake of the text, with its place in the file and in the words of files.
@@ -361,4 +361,3 @@ fn advected(value: &Spanned<DeValue<'_>>) -> Result<String, Wrong> {
     let pairs = all.into_iter().map(pair).collect::<Result<Vec<_>, Wrong>>()?;
     Ok(if pairs.is_empty() { String::new() } else { format!("advected({}),", pairs.join(", ")) })
 }
-

@@ -49,13 +49,13 @@ impl Parameter {
 }
 
 /// The type and the numbers of a parameter that is a table.
-fn typed(
-    name: &str,
-    table: &DeTable<'_>,
-    value: &Spanned<DeValue<'_>>,
-) -> Result<(String, Vec<f64>), Wrong> {
+fn typed(name: &str, table: &DeTable<'_>, value: &Spanned<DeValue<'_>>) -> Result<(String, Vec<f64>), Wrong> {
     let wrong = |span: Range<usize>| Err((span, TABLES.to_owned()));
     let Some((key, inner)) = CARRIED.iter().find_map(|key| table.get_key_value(*key)) else {
+        let is_known = |key: &str| ["moments", "tensor"].contains(&key);
+        if let Some((key, _)) = table.iter().find(|(key, _)| !is_known(key.get_ref())) {
+            return wrong(key.span());
+        }
         let source = ValueDeserializer::from(value.clone());
         let inertia = OfInertia::deserialize(source).map_err(|error| in_value(value, &error))?;
         let Some(inertia) = inertia.inertia() else { return wrong(value.span()) };
@@ -91,7 +91,8 @@ fn shaped(value: &Spanned<DeValue<'_>>) -> Result<Shaped, Wrong> {
             let matrix = Vec::<Vec<Scalar<Any>>>::deserialize(source()).map_err(wrong)?;
             let rows = matrix.len();
             if let Some((row, place)) = matrix.iter().zip(list.iter()).find(|(row, _)| row.len() != rows) {
-                let message = format!("a matrix is square: {rows} rows have {rows} numbers each, and this {}", row.len());
+                let message =
+                    format!("a matrix is square: {rows} rows have {rows} numbers each, and this {}", row.len());
                 return Err((place.span(), message));
             }
             Ok(Shaped { rows, is_matrix: true, numbers: matrix.iter().flat_map(|row| numbers(row)).collect() })

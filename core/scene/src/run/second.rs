@@ -75,12 +75,7 @@ fn largest(run: &Run, parts: Option<&Parts>) -> [f64; 3] {
 
 /// The line about the end of a run; `order` is that of its method. `again` simulates a number of steps of a length, s.
 /// A scene on a group other than SO(3) has `parts`.
-fn line(
-    run: &Run,
-    order: u32,
-    parts: Option<&Parts>,
-    again: impl Fn(u32, f64) -> Result<Run, Stop>,
-) -> Option<String> {
+fn line(run: &Run, order: u32, parts: Option<&Parts>, again: impl Fn(u32, f64) -> Result<Run, Stop>) -> Option<String> {
     let steps = u32::try_from(run.steps()).ok().filter(|steps| *steps > 0)?;
     // The second run has half as many steps; twice as many if that isn't a whole number, or if longer steps fail.
     let longer = (steps % 2 == 0).then(|| again(steps / 2, 2.0 * run.step()).ok()).flatten();

@@ -184,9 +184,12 @@ impl Curve {
                 let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
                 several("Attitude", "", group.attitude(), &names)
             }
-            Self::Rates => {
-                several(titled("Angular velocity in the body", "Velocity of the body"), rate, group.velocity(), components)
-            }
+            Self::Rates => several(
+                titled("Angular velocity in the body", "Velocity of the body"),
+                rate,
+                group.velocity(),
+                components,
+            ),
             Self::Tilt => one("Tilt of the axis from e₃", "degrees", Vertical::Linear, &tilt),
             Self::Energy => one("Energy", joules, Vertical::Linear, &|s| s.energy),
             Self::EnergyError => one("Energy: how far from its start", joules, Vertical::Logarithmic, &|s| {

@@ -139,7 +139,9 @@ impl Recording {
             let columns = Column::of_group(&scene.group);
             let chart = |title, key: &str| {
                 let column = columns.iter().find(|column| column.key() == key);
-                let names = column.iter().flat_map(|column| column.names().filter_map(|name| Some((name, column.place(name)?))));
+                let names = column
+                    .iter()
+                    .flat_map(|column| column.names().filter_map(|name| Some((name, column.place(name)?))));
                 let lines = names.map(|(name, place)| (name.to_owned(), collect(&|sample| sample.numbers[place])));
                 Chart::linear(title, "", lines.collect())
             };
