@@ -138,7 +138,7 @@ b = { position = 0.5, velocity = 0 }
     assert!((order - 2.0).abs() < 0.01 && fine < 1e-9, "{order} {fine:e}");
 }
 
-/// A pendulum in space of Lee, McClamroch and Leok, 2005, for 1000 s: the energy oscillates within the paper's bounds, and
+/// The pendulum in space of a paper of 2005 (Lee, Leok and others) for 1000 s: the energy oscillates within the paper's bounds, and
 /// the momentum along the vertical is conserved.
 #[test]
 fn a_pendulum_in_space() {
