@@ -2,7 +2,7 @@
 
 use liestep::motion::{AnyState, AnyStepper, Factor, FactorKind, Integrator as _};
 use liestep::{SO3, SetupError};
-use nalgebra::{Matrix3, UnitQuaternion};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
@@ -89,9 +89,9 @@ impl Beginning {
     }
 
     /// The angular velocity on SO(3), rad/s; none if the momentum is given.
-    pub(crate) fn rate(&self) -> Option<nalgebra::Vector3<f64>> {
+    pub(crate) fn rate(&self) -> Option<Vector3<f64>> {
         match self.velocity[..] {
-            [x, y, z] if !self.is_by_momentum => Some(nalgebra::Vector3::new(x, y, z)),
+            [x, y, z] if !self.is_by_momentum => Some(Vector3::new(x, y, z)),
             _ => None,
         }
     }
@@ -190,7 +190,9 @@ impl Place<'_, '_> {
         }
         if ROTATIONS.iter().any(|key| self.table.contains_key(*key)) {
             let mut table = self.table.clone();
-            ["position", "velocity", "momentum"].iter().for_each(|key| drop(table.remove(*key)));
+            for key in ["position", "velocity", "momentum"] {
+                table.remove(key);
+            }
             let attitude: UnitQuaternion<f64> = self.read(table, true)?.attitude;
             for (at, entry) in by_rows(SO3::from(attitude).as_matrix()).into_iter().enumerate() {
                 entries[at / 3 * rows + at % 3] = entry;

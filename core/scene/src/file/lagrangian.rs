@@ -233,17 +233,13 @@ impl<'t, 'a> Text<'t, 'a> {
             if self.role == Role::Force { ("force", "Force") } else { ("lagrangian", "Lagrangian") };
         let whole = format!("#[{attribute}(\n{}\n)]\nstruct {name} {{ {} }}", lines.join("\n"), fields.join(", "));
         let declaration = Declaration::parse(&whole).map_err(|error| self.mistake(error))?;
-        if self.has_a_pace && self.is_of_no_body(declaration) {
+        if self.has_a_pace && Late::<SO3, SeenWithEnergy, WithKinetic, Backend>::of(declaration).is_err() {
             let at = self.table.get("pace").map_or_else(|| self.span.clone(), Spanned::span);
             return Err((at, "a pace is that of a motion on `SO3` with three advected vectors at most".to_owned()));
         }
         let numbers = self.parameters.into_iter().flat_map(|one| one.numbers).collect();
         let (increments, has_a_pace, span) = (self.increments, self.has_a_pace, self.span);
         Ok(Declared { declaration, numbers, has_a_pace, increments, span })
-    }
-
-    fn is_of_no_body(&self, declaration: &'static Declaration) -> bool {
-        Late::<SO3, SeenWithEnergy, WithKinetic, Backend>::of(declaration).is_err()
     }
 
     /// The first mistake of the text, with its place in the file and in the words of files.

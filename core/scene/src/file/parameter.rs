@@ -52,6 +52,10 @@ impl Parameter {
 fn typed(name: &str, table: &DeTable<'_>, value: &Spanned<DeValue<'_>>) -> Result<(String, Vec<f64>), Wrong> {
     let wrong = |span: Range<usize>| Err((span, TABLES.to_owned()));
     let Some((key, inner)) = CARRIED.iter().find_map(|key| table.get_key_value(*key)) else {
+        let is_known = |key: &str| ["moments", "tensor"].contains(&key);
+        if let Some((key, _)) = table.iter().find(|(key, _)| !is_known(key.get_ref())) {
+            return wrong(key.span());
+        }
         let source = ValueDeserializer::from(value.clone());
         let inertia = OfInertia::deserialize(source).map_err(|error| in_value(value, &error))?;
         let Some(inertia) = inertia.inertia() else { return wrong(value.span()) };

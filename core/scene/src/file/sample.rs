@@ -58,7 +58,9 @@ impl Sample {
         for &place in self.quaternions.iter() {
             let (now, before) = (&mut self.numbers[place..place + 4], &before.numbers[place..place + 4]);
             if now.iter().zip(before).map(|(now, before)| now * before).sum::<f64>() < 0.0 {
-                now.iter_mut().for_each(|part| *part = -*part);
+                for part in now {
+                    *part = -*part;
+                }
             }
         }
     }

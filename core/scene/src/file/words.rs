@@ -14,9 +14,45 @@ const WORDS: [(&str, &str); 7] = [
     ("write the word `gradients` into the declaration, of each term", "no file has them"),
 ];
 
+/// Types of fields, each with what a file has in its place; `#` is the number of rows.
+const TYPES: [(&str, &str); 9] = [
+    ("ContravariantVector", "a table { contravariant = […] }"),
+    ("ContravariantTensor", "a table { contravariant = [[…], …] }"),
+    ("CovariantTensor", "a table { covariant = [[…], …] }"),
+    ("MixedTensor", "a table { mixed = [[…], …] }"),
+    ("SVector", "a list of # numbers"),
+    ("Vector", "a list of # numbers"),
+    ("Point", "a table { point = […] } of # numbers"),
+    ("SMatrix", "a matrix of # rows"),
+    ("Matrix", "a matrix of # rows"),
+];
+
+/// A message with other words for a type, as `Vector3<f64>` or `SVector<f64, 7>`.
+fn without_type(message: &str, name: &str, written: &str) -> String {
+    let (mut all, mut rest) = (String::new(), message);
+    while let Some(at) = rest.find(name) {
+        let behind = &rest[at + name.len()..];
+        let digits = |text: &str| text.chars().take_while(char::is_ascii_digit).collect::<String>();
+        let own = digits(behind);
+        let scalar = behind[own.len()..].strip_prefix("<f64");
+        let arguments = scalar.and_then(|scalar| Some((scalar.split_once('>')?, own)));
+        let Some(((argument, after), own)) = arguments else {
+            let (before, later) = rest.split_at(at + name.len());
+            all.push_str(before);
+            rest = later;
+            continue;
+        };
+        let rows = if own.is_empty() { digits(argument.trim_start_matches([',', ' '])) } else { own };
+        all.extend([&rest[..at], &written.replace('#', &rows)]);
+        rest = after;
+    }
+    all + rest
+}
+
 /// A message of the derivation in the words of files.
 pub(crate) fn in_files(message: &str) -> String {
     let message = WORDS.iter().fold(message.to_owned(), |message, (program, file)| message.replace(program, file));
+    let message = TYPES.iter().fold(message, |message, (name, written)| without_type(&message, name, written));
     let parts = message.split('`').enumerate();
     // Every second part is code.
     let parts = parts.map(|(number, part)| if number % 2 == 1 { key(part) } else { keys(part) });

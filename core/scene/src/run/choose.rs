@@ -187,8 +187,8 @@ macro_rules! any {
     };
 }
 
-/// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.
-fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
+/// The stepper of a scene with effects along an orbit, whose values are those of each step's middle.
+fn along_orbit(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop> {
     macro_rules! turning {
         ($scene:expr, $values:expr) => {
             match file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok()) {
@@ -199,6 +199,31 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
             }
         };
     }
+    // A compiled body is no part of the program.
+    let body = Moving::of(file, J).filter(|_| !file.has_compiled_body());
+    let seen = Rc::new(file.clone());
+    macro_rules! scene_and_values {
+        ($rest:ident: $type:ty => $scene:expr, |$advected:ident| $values:expr) => {{
+            let $rest: $type = program(file, &J, body.as_ref()).map_err(late_error)?.ok_or_else(nothing)?;
+            let (scene, whole) = ($scene, $rest);
+            let values = move |time| {
+                let now = whole.clone().with_all(&numbers(&seen, &J, body.as_ref(), time));
+                let $advected = now.as_ref().unwrap_or(&whole).advected();
+                $values
+            };
+            turning!(scene, values)
+        }};
+    }
+    if file.has_compiled_body() {
+        let J_d = J.to_nonstandard();
+        scene_and_values!(rest: Rest => RigidBody { J_d } + rest.clone(), |advected| (Default::default(), advected))
+    } else {
+        scene_and_values!(whole: All => whole.clone(), |advected| advected)
+    }
+}
+
+/// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.
+fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
     let J = inertia(file)?;
     let method = Method::from(file.run.method);
     if !matches!(method.scheme, Scheme::Step | Scheme::Composition(_)) {
@@ -213,52 +238,33 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
     if let Some(paced) = file.paced() {
         return any!(Stepper::new(paced.paced().map_err(late_error)?, h).and_then(Stepper::paced));
     }
-    let is_compiled = file.body.is_some() && file.kinetic() == Kinetic::Rigid;
     if file.turning().next().is_some() {
-        let seen = Rc::new(file.clone());
-        // A compiled body is no part of the program.
-        let body = Moving::of(file, J).filter(|_| !is_compiled);
-        macro_rules! scene_and_values {
-            ($rest:ident: $type:ty => $scene:expr, |$advected:ident| $values:expr) => {{
-                let $rest: $type = program(file, &J, body.as_ref()).map_err(late_error)?.ok_or_else(nothing)?;
-                let (scene, whole) = ($scene, $rest);
-                let values = move |time| {
-                    let now = whole.clone().with_all(&numbers(&seen, &J, body.as_ref(), time));
-                    let $advected = now.as_ref().unwrap_or(&whole).advected();
-                    $values
-                };
-                turning!(scene, values)
-            }};
-        }
-        return if is_compiled {
-            let J_d = J.to_nonstandard();
-            scene_and_values!(rest: Rest => RigidBody { J_d } + rest.clone(), |advected| (Default::default(), advected))
-        } else {
-            scene_and_values!(whole: All => whole.clone(), |advected| advected)
-        };
+        return along_orbit(file, J, h);
     }
+    let is_compiled = file.has_compiled_body();
     let data = || Data::of(file, &J)?.stepper(method, h).map_err(whole_error);
     let Some(body) = file.body.filter(|_| is_compiled) else { return data() };
-    match (file.run.method, body.mass) {
-        (Scheme::Step, Distribution::Principal(J_d)) => {
-            let body = PrincipalBody { J_d };
-            // The smallest type that fits makes the fastest steps.
-            if let Ok(kicks) = program::<OnlyKicks, ()>(file, &J, None) {
-                return kicks.map_or_else(|| any!(Stepper::new(body, h)), |kicks| any!(Stepper::new(body + kicks, h)));
-            }
-            match program::<OnlyKicks, V>(file, &J, None) {
-                Ok(Some(kicks)) => any!(Stepper::new(body + kicks, h)),
-                _ => data(),
-            }
+    // The smallest type that fits makes the fastest steps.
+    if let (Scheme::Step, Distribution::Principal(J_d)) = (file.run.method, body.mass) {
+        let body = PrincipalBody { J_d };
+        if let Ok(kicks) = program::<OnlyKicks, ()>(file, &J, None) {
+            return kicks.map_or_else(|| any!(Stepper::new(body, h)), |kicks| any!(Stepper::new(body + kicks, h)));
         }
-        _ => {
-            let body = RigidBody { J_d: J.to_nonstandard() };
-            match program::<WithoutKinetic, Seen>(file, &J, None) {
-                Ok(None) => method.on_any_group(body, h).map_err(Stop::Setup),
-                Ok(Some(rest)) => method.on_any_group(body + rest, h).map_err(Stop::Setup),
-                Err(_) => data(),
-            }
+        if let Ok(Some(kicks)) = program::<OnlyKicks, V>(file, &J, None) {
+            return any!(Stepper::new(body + kicks, h));
         }
+        // A force or a potential that enters the step's equation is evaluated with it, unless much is carried.
+        let whole = sum(file, Moving::of(file, J).as_ref()).map_err(late_error)?;
+        return match program::<WithoutKinetic, Seen>(file, &J, None) {
+            Ok(Some(rest)) if whole.is_some_and(|sum| sum.carried.len() > 1) => any!(Stepper::new(body + rest, h)),
+            _ => data(),
+        };
+    }
+    let body = RigidBody { J_d: J.to_nonstandard() };
+    match program::<WithoutKinetic, Seen>(file, &J, None) {
+        Ok(None) => method.on_any_group(body, h).map_err(Stop::Setup),
+        Ok(Some(rest)) => method.on_any_group(body + rest, h).map_err(Stop::Setup),
+        Err(_) => data(),
     }
 }
 

@@ -57,7 +57,7 @@ pub(crate) fn sample<I: Rotating>(group: &Group, now: &Moment<'_, I>) -> Sample 
         let body = BodySample::turning(I::attitude(now), I::rate(now.velocity()), I::momentum(now));
         let angular_momentum = body.matrix() * body.momentum;
         let vectors = [body.velocity, body.momentum, angular_momentum];
-        let vectors = vectors.iter().flat_map(|vector| vector.as_slice());
+        let vectors = vectors.iter().flat_map(Vector3::as_slice);
         let ends = [energy, body.attitude.defect()];
         let numbers = body.quaternion.iter().chain(vectors).chain(&ends).copied().collect();
         return Sample { time, energy, momentum, angular_momentum, gap, bodies: vec![body], numbers, quaternions };
