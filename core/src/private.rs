@@ -21,9 +21,18 @@ pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Numbers, Real, real};
 
 // Decisions of a solve, for steps that are programs.
 pub use crate::solving::{
-    LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, SETTLED, Solvability, TurningLimits,
-    has_sufficed, largest_fraction, may_suffice, safe, six_digits, turning_limits,
+    LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, NEAR_ENOUGH, SETTLED, SUFFICIENT,
+    Solvability, TurningLimits, has_sufficed, largest_fraction, may_suffice, safe, six_digits, turning_limits,
 };
+
+// Constants of a step, in one place for steps that are programs.
+pub use crate::motion::declared::RATIO;
+pub use crate::motion::summation::{STEPS_BETWEEN_CHECKS, STEPS_BETWEEN_SEVERAL, TOLERATED};
+
+/// The limits of the solve for the velocity of a momentum.
+pub mod velocity {
+    pub use crate::numbers::newton::{AT_MOST, MOST_HALVINGS, MOST_ITERATIONS, ROUNDINGS, ROUNDINGS_OF_SOLUTION};
+}
 
 use nalgebra::{Matrix3, Point, SMatrix, SVector};
 

@@ -2,13 +2,13 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
 
 use clap::ArgMatches;
 use liestep::motion::Moment;
 use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
-use liestep_scene::{Column, LeastWhole, MemberEvent, Mistake, Rotating, SceneEnsemble, SceneFile, Spread, Whole};
+use liestep_scene::{Column, MemberEvent, Mistake, Rotating, SceneEnsemble, SceneFile, Spread};
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
@@ -73,25 +73,18 @@ fn made(
     let drawn_of = |own: &SceneEnsemble, member: &Member<'_>| {
         own.member(&mut |name: &str, spread: Spread| number(member, name, spread))
     };
-    macro_rules! in_lanes {
-        ($whole:ty) => {
-            if let Some(whole) = scene.whole() {
-                let (whole, own): ($whole, _) = (whole, drawn.clone());
-                let make = move |member: &Member<'_>| {
-                    drawn_of(&own, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed)
-                };
-                // Chunks are whole lanes: a 64th of the members, at most a second's work but at least a 4096th of the
-                // members, and at most a million rows.
-                let rows = drawn.every.map_or(1, |every| steps / every + 2);
-                let share = drawn.members.div_ceil(64).min((1 << 24) / steps.max(1)).max(drawn.members >> 12);
-                let chunk = share.min((1 << 20) / rows).next_multiple_of(8).max(8);
-                let members = Ensemble::new(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
-                return finished(path, scene, drawn, members, local, store);
-            }
-        };
+    if let Some(whole) = scene.whole() {
+        let own = drawn.clone();
+        let make =
+            move |member: &Member<'_>| drawn_of(&own, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed);
+        // Chunks are whole lanes: a 64th of the members, at most a second's work but at least a 4096th of the members, and at
+        // most a million rows.
+        let rows = drawn.every.map_or(1, |every| steps / every + 2);
+        let share = drawn.members.div_ceil(64).min((1 << 24) / steps.max(1)).max(drawn.members >> 12);
+        let chunk = share.min((1 << 20) / rows).next_multiple_of(8).max(8);
+        let members = Ensemble::abreast(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
+        return finished(path, scene, drawn, members, local, store);
     }
-    in_lanes!(LeastWhole);
-    in_lanes!(Whole);
     let own = drawn.clone();
     let make = move |member: &Member<'_>| drawn_of(&own, member).and_then(|scene| scene.stepper()).map_err(failed);
     finished(path, scene, drawn, Ensemble::one_by_one(&drawn.text, drawn.members, steps, make), local, store)
@@ -140,10 +133,13 @@ fn plan<M: Rotating + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, members
         plan = plan.chunks_of(members);
     }
     let names: Vec<_> = columns(scene).map(|(_, _, name)| name).collect();
-    let all = scene.columns().to_vec();
-    plan = plan.keep_named(&names, move |run, row| {
-        let numbers = SceneFile::numbers(&all, &Moment::of_step(run.stepper, run.state));
-        row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
+    let own = Arc::new(SceneFile::clone(scene));
+    plan = plan.keep_named(&names, {
+        let own = Arc::clone(&own);
+        move |run, row| {
+            let numbers = own.numbers(own.columns(), &Moment::of_step(run.stepper, run.state));
+            row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
+        }
     });
     let draws: Vec<(String, Spread)> = drawn.draws().map(|(name, spread)| (name.to_owned(), spread)).collect();
     let (names, seed) = (draws.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), drawn.seed);
@@ -156,14 +152,15 @@ fn plan<M: Rotating + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, members
     });
     // A quaternion and its opposite are the same attitude, so means of them have no meaning.
     for (column, place, name) in columns(scene).filter(|(column, ..)| column.key() != "quaternion") {
+        let own = Arc::clone(&own);
         plan = plan.reduce(name, Reduction::Moments, move |run| {
-            let numbers = SceneFile::numbers(&[column], &Moment::of_step(run.stepper, run.state));
+            let numbers = own.numbers(std::slice::from_ref(&column), &Moment::of_step(run.stepper, run.state));
             numbers.get(place).copied().unwrap_or(f64::NAN)
         });
     }
     scene
         .member_events()
-        .fold(plan.keep(["t"], |run| [run.stepper.time(run.state)]), |plan, event| plan.section(section(scene, event)))
+        .fold(plan.keep(["t"], |run| [run.stepper.time(run.state)]), |plan, event| plan.section(section(&own, event)))
 }
 
 /// The number that a member draws.
@@ -175,21 +172,25 @@ fn number(member: &Member<'_>, name: &str, spread: Spread) -> f64 {
 }
 
 /// The section of an event: its times, and the scene's columns then.
-fn section<M: Rotating + 'static>(scene: &SceneFile, (name, event, function, stops): MemberEvent<M>) -> Section<M> {
+fn section<M: Rotating + 'static>(
+    scene: &Arc<SceneFile>,
+    (name, event, function, stops): MemberEvent<M>,
+) -> Section<M> {
     let section = Section::new(event, function);
     let section = if stops { section.until() } else { section };
     let section = section.keep([&format!("{name}_t")], |now| [now.time()]);
     columns(scene).fold(section, |section, (column, place, own)| {
+        let scene = Arc::clone(scene);
         section.keep([&format!("{name}_{own}")], move |now| {
-            [SceneFile::numbers(&[column], now).get(place).copied().unwrap_or(f64::NAN)]
+            [scene.numbers(std::slice::from_ref(&column), now).get(place).copied().unwrap_or(f64::NAN)]
         })
     })
 }
 
 /// The numbers of the scene's columns: each with its column, its place there and its name.
-fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &'static str)> + '_ {
-    let numbers = |column: Column| column.names().iter().enumerate().map(move |(place, name)| (column, place, *name));
-    scene.columns().iter().copied().flat_map(numbers)
+fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &str)> {
+    let numbers = |column| Column::names(column).enumerate().map(|(place, name)| (Column::clone(column), place, name));
+    scene.columns().iter().flat_map(numbers)
 }
 
 fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, report: &Report, (is_share, folder): (bool, &str)) -> String {

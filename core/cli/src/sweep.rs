@@ -66,9 +66,9 @@ fn in_order<T: Sync, R: Send>(
     let threads = thread::available_parallelism().map_or(1, usize::from).min(questions.len());
     thread::scope(|scope| {
         let (sender, answers) = mpsc::channel();
-        for _ in 0..threads {
+        for number in 0..threads {
             let sender = sender.clone();
-            scope.spawn(move || {
+            let started = thread::Builder::new().spawn_scoped(scope, move || {
                 while let Some((number, question)) = {
                     let number = next.fetch_add(1, Ordering::Relaxed);
                     questions.get(number).map(|question| (number, question))
@@ -79,6 +79,12 @@ fn in_order<T: Sync, R: Send>(
                     }
                 }
             });
+            // Fewer threads answer all questions, too.
+            match started {
+                Err(error) if number == 0 => return Err(Failure::Runs(format!("no thread starts: {error}"))),
+                Err(_) => break,
+                Ok(_) => {}
+            }
         }
         drop(sender);
         let mut waiting = BTreeMap::new();

@@ -3,11 +3,11 @@
 use core::fmt;
 use std::sync::OnceLock;
 
-use liestep::motion::{Batchable, Integrator, Moment};
+use liestep::motion::{AnyStepper, Batchable, Integrator, Moment};
 use simba::simd::AutoF64x8;
 
 use crate::draw::Member;
-use crate::group::{Grouping, Start, in_lanes, one_by_one};
+use crate::group::{Grouping, Start, abreast, in_lanes, one_by_one};
 use crate::outcome::{Outcome, Passages};
 use crate::reduce::{Moments, Reduction};
 use crate::section::{LANES, Section};
@@ -52,6 +52,19 @@ pub struct Ensemble<M: Integrator> {
     pub(crate) sections: Vec<Section<M>>,
     fingerprint: OnceLock<u64>,
     size: OnceLock<u64>,
+}
+
+impl Ensemble<AnyStepper> {
+    /// An ensemble of steppers whose states are numbers: members whose steppers are [joinable](AnyStepper::joinable) are stepped
+    /// together, and have the bits that they have alone.
+    pub fn abreast(
+        name: &str,
+        members: u64,
+        steps: u64,
+        make: impl Fn(&Member<'_>) -> Result<Start<AnyStepper>, Failure> + Send + Sync + 'static,
+    ) -> Self {
+        Self::of(name, members, steps, Box::new(make), abreast, false)
+    }
 }
 
 impl<M: Integrator> Ensemble<M> {

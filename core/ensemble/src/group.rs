@@ -1,7 +1,7 @@
 //! Groups of members that are stepped together: in lanes, or one by one.
 
 use liestep::StepError;
-use liestep::motion::{Batch, Batchable, Integrator};
+use liestep::motion::{Abreast, AnyState, AnyStepper, Batch, Batchable, Integrator};
 use liestep::numbers::{InLanes, Lanes as _};
 use simba::simd::AutoF64x8;
 
@@ -61,6 +61,61 @@ pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(mut left: &[Start<M>])
     while let Some((batch, count)) = Batch::<AutoF64x8, M>::of_first(&left[..left.len().min(LANES)]) {
         let before = batch.states().clone();
         groups.push((Box::new(LaneGroup { batch, before }), count));
+        left = &left[count..];
+    }
+    groups
+}
+
+/// Members whose states are numbers, in lanes.
+struct TogetherByNumbers {
+    stepper: AnyStepper,
+    bodies: Box<dyn Abreast>,
+    states: Vec<AnyState>,
+    before: Vec<AnyState>,
+}
+
+impl Group<AnyStepper> for TogetherByNumbers {
+    fn run(&mut self, steps: u64) {
+        if steps == 1 {
+            self.before.clone_from(&self.states);
+        }
+        self.bodies.run(steps);
+        for (place, state) in self.states.iter_mut().enumerate() {
+            if let Some(now) = self.stepper.state_of(&self.bodies.state(place)) {
+                *state = now;
+            }
+        }
+    }
+
+    fn state(&self, member: usize) -> AnyState {
+        self.states[member].clone()
+    }
+
+    fn before(&self, member: usize) -> AnyState {
+        self.before[member].clone()
+    }
+
+    fn values(&self, _: &Section<AnyStepper>) -> Option<[f64; LANES]> {
+        None
+    }
+
+    fn error(&self, member: usize) -> Option<StepError> {
+        self.bodies.error(member).cloned()
+    }
+}
+
+/// Groups of members that are stepped together, and of one each.
+pub(crate) fn abreast(mut left: &[Start<AnyStepper>]) -> Vec<(Box<dyn Group<AnyStepper>>, usize)> {
+    let mut groups: Vec<(Box<dyn Group<AnyStepper>>, usize)> = Vec::new();
+    while let Some((stepper, _)) = left.first() {
+        let Some((bodies, count)) = AnyStepper::abreast(left) else {
+            groups.append(&mut one_by_one(&left[..1]));
+            left = &left[1..];
+            continue;
+        };
+        let states: Vec<AnyState> = left[..count].iter().map(|(_, state)| state.clone()).collect();
+        let before = states.clone();
+        groups.push((Box::new(TogetherByNumbers { stepper: stepper.clone(), bodies, states, before }), count));
         left = &left[count..];
     }
     groups

@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use liestep::__private::{log_ratio, stumpff};
 use liestep::numbers::{Real, real};
+use liestep_derivation::whole::Sizes;
 use liestep_derivation::{Array, Function, Operation, Program, Source};
 
 use crate::error::LateError;
@@ -25,9 +26,71 @@ pub trait Backend<T: Real>: Copy + Debug + 'static {
     /// Compiles code now that is otherwise compiled after some runs.
     fn prepare(_: &Self::Code) {}
 
+    /// Makes a usual step of a state in one piece, where the back end can: twice the number of its iterations, plus one if its
+    /// increment is far from the identity; or zero, without a change, if the driver has to run the programs.
+    #[inline]
+    #[must_use]
+    fn step(_: &UsualStep<'_, Self::Code>, _: StepInputs<'_, T>, _: &mut [T]) -> u64 {
+        0
+    }
+
+    /// Compiles a step now that is otherwise compiled after some of them; returns whether there is one.
+    #[must_use]
+    fn prepare_step(_: &UsualStep<'_, Self::Code>) -> bool {
+        false
+    }
+
     /// Runs a program, for as many outputs as it has. If constants or arrays are shorter than it reads, it gives NaN or
     /// panics.
     fn run<const N: usize>(code: &Self::Code, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]);
+}
+
+/// The programs of a usual step, as code, and the sizes of a state; see
+/// [`Programs`](liestep_derivation::whole::Programs).
+#[derive(Debug)]
+#[allow(missing_docs)] // their names are those of the programs
+pub struct UsualStep<'a, C> {
+    pub sizes: &'a Sizes,
+    /// Whether the determinant of a Jacobian is the product of those of its blocks, each relative to its diagonal.
+    pub is_product: bool,
+    pub target: &'a C,
+    pub iterate: &'a C,
+    pub again: &'a C,
+    pub finish: &'a C,
+    pub safe: Option<&'a C>,
+}
+
+impl<'a, C> UsualStep<'a, C> {
+    /// The same step with other code for each program.
+    #[must_use]
+    pub fn map<D>(&self, other: impl Fn(&'a C) -> &'a D) -> UsualStep<'a, D> {
+        UsualStep {
+            sizes: self.sizes,
+            is_product: self.is_product,
+            target: other(self.target),
+            iterate: other(self.iterate),
+            again: other(self.again),
+            finish: other(self.finish),
+            safe: self.safe.map(other),
+        }
+    }
+
+    /// All programs.
+    pub fn programs(&self) -> impl Iterator<Item = &'a C> {
+        [self.target, self.iterate, self.again, self.finish].into_iter().chain(self.safe)
+    }
+}
+
+/// The numbers that a usual step reads besides the state.
+#[derive(Clone, Copy, Debug)]
+pub struct StepInputs<'a, T> {
+    /// The constants.
+    pub constants: &'a [T],
+    /// The numbers of the parameters.
+    pub parameters: &'a [T],
+    /// The determinant above which a Jacobian serves twice, where the inertia is constant, and the square of the largest right
+    /// side.
+    pub bounds: [T; 2],
 }
 
 /// Interprets programs operation by operation: safe, on every machine, and in lanes.

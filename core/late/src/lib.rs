@@ -2,7 +2,7 @@
 //!
 //! # Inside
 //!
-//! `{lanes, gradients} → effect → term → declaration → sum → {frames, specialised → code} → error`, and
+//! `gradients → effect → term → declaration → sum → {frames, specialised → code} → error`, and
 //! `{latex, written} → declaration`: a [`Declaration`] is the derivation of a text, with its stages as straight-line
 //! programs, or the `sum` of several; a [`Late`] is one with numbers, and an [`Effect`](liestep::mechanics::Effect) as
 //! any other. A [`Backend`] runs the programs: [`Interpreter`] here, machine code in `liestep-machine`. `carried`
@@ -17,7 +17,6 @@ mod effect;
 mod error;
 mod frames;
 mod gradients;
-mod lanes;
 mod latex;
 mod specialised;
 mod sum;
@@ -26,14 +25,14 @@ mod whole;
 mod written;
 
 pub use carried::Slots;
-pub use code::{Backend, Code, Given, Interpreter, applied};
+pub use code::{Backend, Code, Given, Interpreter, StepInputs, UsualStep, applied};
 pub use declaration::{Declaration, kept};
 pub use effect::{Constants, StepTerms};
 pub use error::{LateError, Mistake};
-pub use lanes::Wider;
 pub use latex::latex;
+pub use liestep_derivation::whole::Sizes;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use specialised::specialised;
 pub use term::{Late, numbers};
-pub use whole::{Whole, WholeError};
+pub use whole::{BackendInLanes, Whole, WholeError};
 pub use written::{c, rust};

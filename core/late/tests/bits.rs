@@ -21,12 +21,10 @@ use liestep::mechanics::{
     DiagonalNonstandardInertia, Effect, Inertia, OnlyKicks, SecondDerivatives, StepPoint, Term as _, Vector,
     WithKinetic, WithoutKinetic,
 };
-use liestep::motion::Batch;
 use liestep::numbers::{Coordinates as _, Entries as _};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 use liestep_late::{Array, Backend, Declaration, Interpreter, Late, LateError, numbers, specialised};
 use nalgebra::{Matrix3, Matrix5, Point, SMatrix, SVector, Vector3, Vector5};
-use simba::simd::AutoF64x4;
 
 use same::{assert_as_compiled, assert_same, assert_whole};
 
@@ -440,35 +438,4 @@ fn specialised_programs_are_shorter() {
     assert!(lengths[0] >= 90 + 3 && lengths[1] <= 61 + 3, "{lengths:?}");
     let (general, specialised) = (after(late.clone()), after(late.specialised()));
     assert!((general - specialised).norm() < 1e-13 * general.norm(), "{general} {specialised}");
-}
-
-/// Programs of one form with different numbers, in lanes.
-#[test]
-fn lanes_have_the_bits_of_single_steps() {
-    let top = random!(1, FullTop { J_d m g rho up });
-    let full: Late<SO3, Vector3<f64>, WithKinetic> = Late::like(&top).expect("a declaration");
-    let top = random!(2, FourthOrderTop { J weight rho up });
-    let fourth: Late<SO3, Vector3<f64>, WithKinetic> = Late::like(&top).expect("a declaration");
-    // The kicks of a torque are known before a step.
-    let both = [RigidBody::<f64>::DECLARATION, Torque::<f64>::DECLARATION].map(|it| Declaration::parse(it).unwrap());
-    let values = [numbers(&random!(1, RigidBody { J_d })), numbers(&random!(2, Torque { torque }))].concat();
-    let both = Late::of(Declaration::sum(&both).unwrap()).and_then(|late| late.with_all(&values)).expect("numbers");
-    for (late, name, count) in [(full, "m", 1), (fourth, "weight", 1), (both, "Torque.torque", 3)] {
-        let bodies = [1.0, 1.5, 2.0, 2.5].map(|number| {
-            let late = late.clone().with(name, &vec![number; count]).expect("a number");
-            let stepper = Stepper::new(late, 0.01).expect("a stepper");
-            let state = stepper.start(SO3::exp(Vector3::x() * number), Vector3::new(0.3, 1.0, 5.0)).expect("a start");
-            (stepper, state)
-        });
-        let mut batch = Batch::<AutoF64x4, _>::new(&bodies).expect("they share a text");
-        batch.run(1_000);
-        for (k, (stepper, mut alone)) in bodies.into_iter().enumerate() {
-            stepper.run(&mut alone, 1_000).expect("steps");
-            assert_eq!(batch.state(k), alone, "lane {k}");
-        }
-    }
-    let [one, other] = [Late::like(&random!(1, FreeBody { J_d })), Late::like(&random!(1, RigidBody { J_d }))]
-        .map(|late: Result<Late<SO3>, _>| Stepper::new(late.expect("a declaration"), 0.01).expect("a stepper"));
-    let state = one.start(SO3::identity(), Vector3::z()).expect("a start");
-    assert!(Batch::<AutoF64x4, _>::new(&[(one, state), (other, state)]).is_err(), "two texts share no lanes");
 }

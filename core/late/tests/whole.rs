@@ -2,9 +2,10 @@
 //! substeps and prescribed values as by typed steppers; errors.
 
 use declarations::FullTop;
+use liestep::effects::{RigidBody, Torque};
 use liestep::mechanics::Effect as _;
 use liestep::methods::CompositionScheme;
-use liestep::motion::{Integrator as _, Propagator as _, Remedy};
+use liestep::motion::{AnyStepper, Integrator as _, Propagator as _, Remedy};
 use liestep::with::Method;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
 use liestep_late::{Declaration, LateError, Whole, WholeError, numbers};
@@ -201,6 +202,38 @@ fn values_are_prescribed_for_a_step() {
     let wrong = vec![f64::NAN; whole.numbers().len()];
     let error = StepError::NonFinite { what: "value given to the step" };
     assert_eq!((whole.step_with(&mut state, &wrong), state), (Err(error), before));
+}
+
+/// Bodies of one text with other numbers and another step, in lanes, have the bits that they have alone, and their own ends.
+#[test]
+fn lanes_have_the_bits_of_single_steps() {
+    let texts = [RigidBody::<f64>::DECLARATION, Torque::<f64>::DECLARATION].map(|it| Declaration::parse(it).unwrap());
+    // The kicks of a torque are known before a step.
+    let both = Declaration::sum(&texts).expect("a sum");
+    let of_both = [2.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 3.0, 0.1, -0.2, 0.1];
+    let full = Declaration::parse(FullTop::DECLARATION).expect("a declaration");
+    let of_full = full.described(&numbers(&top())).expect("numbers");
+    for (declaration, values, name) in [(both, &of_both[..], "Torque.torque"), (full, &of_full, "rho")] {
+        // The last body turns too far for its step.
+        let mut bodies = [0.0, 1.0, 2.0, 3.0, 40.0].map(|number| {
+            let mut values = values.to_vec();
+            declaration.set(&mut values, name, &[0.1 * number, -0.2, 0.1]).expect("a value");
+            let whole: Whole =
+                Whole::of(declaration, &values, 0.01 + 1e-3 * number, Method::default()).expect("a stepper");
+            let stepper = whole.into_joinable();
+            let state = stepper.start(&IDENTITY, &[0.3, 1.0 + number, 5.0 + number]).expect("a start");
+            (stepper, state)
+        });
+        let (mut together, count) = AnyStepper::abreast(&bodies).expect("they share a text");
+        assert_eq!(count, 5);
+        together.run(1_100);
+        for (lane, (stepper, alone)) in bodies.iter_mut().enumerate() {
+            let ended = stepper.run_stretches(alone, 1_100, &mut |_, _| 0).err();
+            assert_eq!(together.error(lane), ended.as_ref(), "lane {lane}");
+            assert_eq!(ended.is_some(), lane == 4, "lane {lane}");
+            assert_eq!(&*together.state(lane), alone.numbers(), "lane {lane}");
+        }
+    }
 }
 
 /// Steppers with other numbers share the code, and are those that are made anew.

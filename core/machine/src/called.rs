@@ -1,16 +1,16 @@
-//! Calls of machine code: the only place where anything is unsafe.
+//! Calls of machine code.
 #![allow(unsafe_code)]
 
 use std::any::TypeId;
 use std::fmt;
 use std::mem::MaybeUninit;
-use std::sync::{Mutex, PoisonError};
 
-use cranelift_jit::JITModule;
-use liestep_late::{Array, Given, Program};
+use liestep_late::{Array, Given, Program, StepInputs, UsualStep};
 use simba::simd::AutoF64x8;
 
-use crate::translated;
+use crate::function::Literals;
+use crate::memory::Pages;
+use crate::{step, translated};
 
 /// The number of lanes of an ensemble.
 pub(crate) const LANES: usize = 8;
@@ -26,18 +26,8 @@ pub(crate) struct Function<const LANES: usize> {
     /// A bit for each array that a call has to pass.
     read: u16,
     outputs: usize,
-    /// The executable memory, which lives as long as the function.
-    memory: Mutex<Option<JITModule>>,
-}
-
-impl<const LANES: usize> Drop for Function<LANES> {
-    fn drop(&mut self) {
-        if let Some(module) = self.memory.get_mut().unwrap_or_else(PoisonError::into_inner).take() {
-            // SAFETY: this is the only function of the module, and `entry` isn't handed out: none is left that could be
-            // called, and none is running, as a call borrows it.
-            unsafe { module.free_memory() };
-        }
-    }
+    /// The executable memory and the literals, which live as long as the function.
+    _memory: (Pages, Literals),
 }
 
 impl<const LANES: usize> fmt::Debug for Function<LANES> {
@@ -57,15 +47,14 @@ pub(crate) fn lanes_of<T: 'static>() -> usize {
 
 impl<const LANES: usize> Function<LANES> {
     pub(crate) fn of(program: &Program) -> Result<Self, String> {
-        let (module, id) = translated::module(program, LANES)?;
-        let code = module.get_finalized_function(id);
-        // SAFETY: the module has been finalised, so that this is the address of a function; `translated` has declared it
-        // with the signature of `Entry` and the calling convention of C.
-        let entry = unsafe { std::mem::transmute::<*const u8, Entry>(code) };
+        let (code, literals) = translated::program(program, LANES)?;
+        let pages = Pages::of(&code)?;
+        // SAFETY: the pages begin with code that `translated` has generated for the signature of `Entry` and the calling
+        // convention of C; they are executable, and stay so as long as this function has them.
+        let entry = unsafe { std::mem::transmute::<*const u8, Entry>(pages.start()) };
         let least = translated::least(program);
         let read = translated::given(&least).fold(0, |read, array| read | 1 << array as u16);
-        let memory = Mutex::new(Some(module));
-        Ok(Self { entry, least, read, outputs: program.outputs.len(), memory })
+        Ok(Self { entry, least, read, outputs: program.outputs.len(), _memory: (pages, literals) })
     }
 
     /// Calls the function with constants and the other inputs.
@@ -97,8 +86,69 @@ impl<const LANES: usize> Function<LANES> {
             // constants are; and it writes as many outputs as there is place for, which nobody else can access while
             // they are borrowed here. `T` is `f64`, or an array of as many as the code was compiled for, of which it
             // reads and writes two from `first` on: so the pointers have the right type and alignment. The memory of
-            // the code is owned by `self`.
+            // the code and its literals are owned by `self`. Its frame, of 64 KiB at most, is on the stack of this thread:
+            // code whose frame is larger than a page touches all its pages from the top down before it uses them, so that
+            // a stack that is too short ends at its guard page, as that of any function of Rust does.
             unsafe { (self.entry)(constants, inputs.as_ptr().cast(), outputs) };
+        }
+    }
+}
+
+/// A function of a state, the constants, the parameters and the bounds of a step.
+type StepEntry = unsafe extern "C" fn(*mut f64, *const f64, *const f64, *const f64) -> u64;
+
+/// A usual step as a machine function.
+pub(crate) struct StepFunction {
+    entry: StepEntry,
+    state: usize,
+    constants: usize,
+    parameters: usize,
+    _memory: (Pages, Literals),
+}
+
+impl fmt::Debug for StepFunction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("StepFunction").field("state", &self.state).finish_non_exhaustive()
+    }
+}
+
+impl StepFunction {
+    pub(crate) fn of(usual: &UsualStep<'_, Program>) -> Result<Self, String> {
+        let (code, literals) = step::code(usual)?;
+        let pages = Pages::of(&code)?;
+        // SAFETY: the pages begin with code that `step` has generated for the signature of `StepEntry` and the calling
+        // convention of C; they are executable, and stay so as long as this function has them.
+        let entry = unsafe { std::mem::transmute::<*const u8, StepEntry>(pages.start()) };
+        let least = |array: Array| {
+            let all = usual.programs().map(|program| translated::least(program)[array as usize]);
+            all.max().unwrap_or(0)
+        };
+        let (constants, parameters) = (least(Array::Constants), least(Array::Parameters));
+        Ok(Self { entry, state: usual.sizes.state(), constants, parameters, _memory: (pages, literals) })
+    }
+
+    /// Makes a step; zero if that isn't usual, or if a slice is shorter than the function reads. Then the state is as it was.
+    #[inline]
+    pub(crate) fn call<T: 'static>(&self, inputs: StepInputs<'_, T>, state: &mut [T]) -> u64 {
+        let StepInputs { constants, parameters, bounds } = inputs;
+        let is_there = state.len() >= self.state
+            && constants.len() >= self.constants
+            && parameters.len() >= self.parameters
+            && lanes_of::<T>() == 1;
+        if !is_there {
+            return 0;
+        }
+        // SAFETY: `T` is `f64`. The code reads and writes as many numbers of the state as `sizes` counts, reads as many of
+        // the constants and of the parameters as its programs do, and both bounds: all are there, and the state is borrowed
+        // here alone. The memory of the code and its literals are owned by `self`. Its frame is bounded and touched as that of
+        // `Function`.
+        unsafe {
+            (self.entry)(
+                state.as_mut_ptr().cast(),
+                constants.as_ptr().cast(),
+                parameters.as_ptr().cast(),
+                bounds.as_ptr().cast(),
+            )
         }
     }
 }

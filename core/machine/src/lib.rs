@@ -9,24 +9,38 @@
 //! and for other scalars, programs are interpreted. The code for aarch64 hasn't been run; there, too, the tests here
 //! compare it with the interpreter.
 //!
+//! # Memory
+//!
+//! All code of a process is in one arena of at most [`MOST_MEMORY`] bytes, [`used_memory`] of which are taken: two mappings
+//! of memory, however many texts there are. A declaration that is read stays as long as the process, and so does its code.
+//! Where the arena ends, or the system gives no memory, programs stay interpreted, with the same bits.
+//!
 //! # Inside
 //!
-//! `lib → called → translated → registers`: `translated` generates the code, `registers` assigns values to registers
-//! and memory, and everything unsafe is in `called`.
+//! `lib → called → {memory, {step, translated} → {piece, function} → operation → registers}`: `translated` generates the code
+//! of a program, `step` that of a whole step, `piece` orders operations, `registers` assigns values to registers and memory.
+//! Everything unsafe is in `called` and `memory`.
 
 #![cfg(feature = "cranelift")]
 
 mod called;
+mod function;
+mod memory;
+mod operation;
+mod piece;
 mod registers;
+mod step;
 mod translated;
+
+pub use memory::{MOST_MEMORY, used_memory};
 
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use liestep::numbers::Real;
-use liestep_late::{Backend, Code, Given, Interpreter, LateError, Program};
+use liestep_late::{Backend, Code, Given, Interpreter, LateError, Program, StepInputs, UsualStep};
 
-use called::{Function, LANES, lanes_of};
+use called::{Function, LANES, StepFunction, lanes_of};
 
 /// A back end that interprets programs until they have run some hundred times, and then compiles them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,23 +51,31 @@ pub struct Machine;
 pub struct Both {
     program: Program,
     interpreted: Code,
-    of_numbers: Made<1>,
-    of_lanes: Made<LANES>,
+    of_numbers: Compilation<Function<1>>,
+    of_lanes: Compilation<Function<LANES>>,
+    /// The step that ends with this program.
+    of_step: Compilation<StepFunction>,
 }
 
 /// A function, once it is compiled.
-#[derive(Debug, Default)]
-struct Made<const LANES: usize> {
+#[derive(Debug)]
+struct Compilation<F> {
     /// The number of interpreted runs.
     runs: AtomicU32,
     /// The function; also missing if the compilation failed.
-    function: OnceLock<Function<LANES>>,
+    function: OnceLock<F>,
 }
 
-impl<const LANES: usize> Made<LANES> {
-    fn make(&self, program: &Program) {
+impl<F> Default for Compilation<F> {
+    fn default() -> Self {
+        Self { runs: AtomicU32::new(0), function: OnceLock::new() }
+    }
+}
+
+impl<F> Compilation<F> {
+    fn make(&self, compile: impl FnOnce() -> Result<F, String>) {
         if self.function.get().is_none()
-            && let Ok(function) = Function::of(program)
+            && let Ok(function) = compile()
         {
             // Another thread may have compiled it first.
             let _ = self.function.set(function);
@@ -61,37 +83,55 @@ impl<const LANES: usize> Made<LANES> {
     }
 
     /// Counts a run, and compiles after some; a compilation that failed isn't repeated.
-    fn run(&self, program: &Program) {
-        if self.runs.fetch_add(1, Ordering::Relaxed) == FEW {
-            self.make(program);
+    fn run(&self, few: u32, compile: impl FnOnce() -> Result<F, String>) {
+        if self.runs.fetch_add(1, Ordering::Relaxed) == few {
+            self.make(compile);
         }
     }
 }
 
-/// The number of runs that are interpreted in less time than a compilation takes.
+/// The numbers of runs that are interpreted in less time than a compilation takes, of a program and of a step, whose programs
+/// run some times each.
 const FEW: u32 = 256;
+const FEW_STEPS: u32 = 64;
 
 impl<T: Real> Backend<T> for Machine {
     type Code = Both;
 
     fn codes(programs: &[&Program]) -> Result<Vec<Both>, LateError> {
-        translated::isa().map_err(LateError::Machine)?;
+        function::isa().map_err(LateError::Machine)?;
         let interpreted = <Interpreter as Backend<f64>>::codes(programs)?;
         let both = |(&program, interpreted): (&&Program, Code)| Both {
             program: program.clone(),
             interpreted,
-            of_numbers: Made::default(),
-            of_lanes: Made::default(),
+            of_numbers: Compilation::default(),
+            of_lanes: Compilation::default(),
+            of_step: Compilation::default(),
         };
         Ok(programs.iter().zip(interpreted).map(both).collect())
     }
 
     fn prepare(code: &Both) {
         match lanes_of::<T>() {
-            1 => code.of_numbers.make(&code.program),
-            LANES => code.of_lanes.make(&code.program),
+            1 => code.of_numbers.make(|| Function::of(&code.program)),
+            LANES => code.of_lanes.make(|| Function::of(&code.program)),
             _ => {}
         }
+    }
+
+    #[inline]
+    fn step(usual: &UsualStep<'_, Both>, inputs: StepInputs<'_, T>, state: &mut [T]) -> u64 {
+        let compilation = &usual.finish.of_step;
+        if let Some(function) = compilation.function.get() {
+            return function.call(inputs, state);
+        }
+        compilation.run(FEW_STEPS, || StepFunction::of(&usual.map(|both| &both.program)));
+        0
+    }
+
+    fn prepare_step(usual: &UsualStep<'_, Both>) -> bool {
+        usual.finish.of_step.make(|| StepFunction::of(&usual.map(|both| &both.program)));
+        usual.finish.of_step.function.get().is_some()
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
@@ -112,8 +152,8 @@ impl<T: Real> Backend<T> for Machine {
 #[inline(never)]
 fn run_first<T: Real, const N: usize>(code: &Both, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
     match lanes_of::<T>() {
-        1 => code.of_numbers.run(&code.program),
-        LANES => code.of_lanes.run(&code.program),
+        1 => code.of_numbers.run(FEW, || Function::of(&code.program)),
+        LANES => code.of_lanes.run(FEW, || Function::of(&code.program)),
         _ => {}
     }
     Interpreter::run(&code.interpreted, constants, given, outputs);

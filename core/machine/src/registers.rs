@@ -18,34 +18,58 @@ pub(crate) type Place = (Value, i32);
 /// each operation.
 pub(crate) struct Registers {
     pub(crate) number: Type,
-    flags: MemFlagsData,
+    pub(crate) flags: MemFlagsData,
     held: Vec<(usize, Value)>,
     /// The place of each value in memory, if it has one.
     places: Vec<Option<Place>>,
     /// The times of each value's reads, the next last.
     reads: Vec<Vec<usize>>,
-    /// The frame of the function, which grows with the stored values.
-    slot: StackSlot,
-    frame: Value,
+    frame: Frame,
+    /// The bytes of the frame that belong to others, and those that are set aside.
+    own: i32,
+    set_aside: u32,
     /// Places in the frame whose values aren't read again.
     free: Vec<i32>,
 }
 
+/// The frame of a function, which grows with the stored values.
+#[derive(Clone, Copy)]
+pub(crate) struct Frame {
+    slot: StackSlot,
+    pub(crate) start: Value,
+}
+
+/// The largest frame, bytes: a small part of the stack of any thread.
+const LARGEST_FRAME: u32 = 64 << 10;
+
+impl Frame {
+    /// A frame that begins with so many bytes.
+    pub(crate) fn new(builder: &mut FunctionBuilder, pointer: Type, size: u32) -> Self {
+        let slot = builder.create_sized_stack_slot(StackSlotData::new(StackSlotKind::ExplicitSlot, size, 4));
+        let start = builder.ins().stack_addr(pointer, slot, 0);
+        Self { slot, start }
+    }
+
+    /// Checks that a stack has room for it.
+    pub(crate) fn check(self, builder: &FunctionBuilder) -> Result<(), String> {
+        let size = builder.func.sized_stack_slots[self.slot].size;
+        let most = LARGEST_FRAME;
+        if size <= most { Ok(()) } else { Err(format!("a frame of {size} bytes is larger than {most}")) }
+    }
+}
+
 impl Registers {
-    /// Inputs with their places, and results after them; `reads` has the times at which each is read, the next one
-    /// last.
+    /// Values, some with places; `reads` has the times at which each is read, the next one last. The first bytes of the
+    /// frame belong to others.
     pub(crate) fn new(
-        builder: &mut FunctionBuilder,
-        (number, pointer): (Type, Type),
+        number: Type,
         flags: MemFlagsData,
-        given: impl IntoIterator<Item = Place>,
+        (frame, set_aside): (Frame, u32),
+        places: Vec<Option<Place>>,
         reads: Vec<Vec<usize>>,
     ) -> Self {
-        let mut places: Vec<_> = given.into_iter().map(Some).collect();
-        places.resize(reads.len(), None);
-        let slot = builder.create_sized_stack_slot(StackSlotData::new(StackSlotKind::ExplicitSlot, 0, 4));
-        let frame = builder.ins().stack_addr(pointer, slot, 0);
-        Self { number, flags, held: Vec::new(), places, reads, slot, frame, free: Vec::new() }
+        let own = set_aside.cast_signed();
+        Self { number, flags, held: Vec::new(), places, reads, frame, own, set_aside, free: Vec::new() }
     }
 
     /// Two values for an operation that reads them now: the first in a register, the second in a register or from
@@ -76,7 +100,7 @@ impl Registers {
         for at in [first, second] {
             if self.reads[at].is_empty() {
                 self.held.retain(|&(one, _)| one != at);
-                let place = self.places[at].take_if(|place| place.0 == self.frame);
+                let place = self.places[at].take_if(|place| place.0 == self.frame.start && place.1 >= self.own);
                 self.free.extend(place.map(|place| place.1));
             }
         }
@@ -124,12 +148,13 @@ impl Registers {
             let (at, value) = self.held.swap_remove(last);
             if self.places[at].is_none() {
                 let offset = self.free.pop().unwrap_or_else(|| {
-                    let frame = &mut builder.func.sized_stack_slots[self.slot];
-                    frame.size += self.number.bytes();
-                    (frame.size - self.number.bytes()).cast_signed()
+                    let (slot, place) = (&mut builder.func.sized_stack_slots[self.frame.slot], self.set_aside);
+                    self.set_aside += self.number.bytes();
+                    slot.size = slot.size.max(self.set_aside);
+                    place.cast_signed()
                 });
-                builder.ins().store(self.flags, value, self.frame, offset);
-                self.places[at] = Some((self.frame, offset));
+                builder.ins().store(self.flags, value, self.frame.start, offset);
+                self.places[at] = Some((self.frame.start, offset));
             }
         }
     }

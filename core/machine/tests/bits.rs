@@ -14,7 +14,6 @@ use liestep::effects::{
 use liestep::groups::{CayleyRetraction, LieGroup, Retraction, SE3};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Effect, WithKinetic};
-use liestep::motion::Batch;
 use liestep::numbers::Real;
 use liestep::{SO3, Stepper};
 use liestep_late::{Array, Backend, Declaration, Interpreter, Late, LateError, Operation, Program, Source};
@@ -218,26 +217,6 @@ fn steps_are_the_same() {
         ("height", &[0.0, 0.0, 1.0, 0.0]),
     ];
     assert_same_steps::<SE3, Vector4<f64>>(UnderwaterBody::DECLARATION, of_water);
-}
-
-/// Lanes with kicks known before a step have the bits of single steps, from the first, interpreted ones on.
-#[test]
-fn lanes_have_the_bits_of_single_steps() {
-    let both = [RigidBody::<f64>::DECLARATION, Torque::<f64>::DECLARATION].map(|it| Declaration::parse(it).unwrap());
-    let late: Late<SO3, (), WithKinetic, Machine> = Late::of(Declaration::sum(&both).unwrap()).unwrap();
-    let late = late.with_all(&[2.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 3.0, 0.0, 0.0, 0.0]).expect("numbers");
-    let bodies = std::array::from_fn::<_, 8, _>(|k| {
-        let torque = [0.1 * f64::from(u8::try_from(k).unwrap()), -0.2, 0.1];
-        let stepper = Stepper::new(late.clone().with("Torque.torque", &torque).expect("a torque"), 0.01).unwrap();
-        let state = stepper.start(SO3::exp(Vector3::x()), Vector3::new(0.3, 1.0, 5.0)).unwrap();
-        (stepper, state)
-    });
-    let mut batch = Batch::<AutoF64x8, _>::new(&bodies).expect("they share a text");
-    batch.run(1_000);
-    for (k, (stepper, mut alone)) in bodies.into_iter().enumerate() {
-        stepper.run(&mut alone, 1_000).expect("steps");
-        assert_eq!(batch.state(k), alone, "lane {k}");
-    }
 }
 
 /// The comparison detects a swapped operand, an input of another stage and another register.

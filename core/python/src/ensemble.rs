@@ -159,7 +159,7 @@ where
         return Err(Failure::Of("SetupError", format!("there is no share {share} of {shares}: they count from zero")));
     }
     std::thread::scope(|scope| {
-        let work = scope.spawn(|| {
+        let work = std::thread::Builder::new().spawn_scoped(scope, || {
             let local = Local::threads(plan.threads).share(share, shares).stopped_by(&stop);
             ensemble.run_telling(&local, store, &|progress| {
                 if let Ok(mut now) = now.lock() {
@@ -167,6 +167,7 @@ where
                 }
             })
         });
+        let work = work.map_err(|error| store_error(&format_args!("no thread starts: {error}")))?;
         let mut raised = None;
         while !work.is_finished() {
             std::thread::park_timeout(LOOK);

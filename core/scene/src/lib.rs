@@ -35,7 +35,7 @@ pub use file::read::{Scene, parse, read};
 pub use file::sample::{BodySample, Sample};
 pub use file::scene::{SceneFile, Sweep};
 pub use file::system::System;
-pub use run::choose::{LeastWhole, MemberInLanes, Whole};
+pub use run::choose::Whole;
 pub use run::course::{MemberEvent, MemberStart, Rotating};
 pub use run::make::{Happening, Run};
 pub use show::derivation::{Form, declaration, derivation, derived, written};

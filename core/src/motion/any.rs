@@ -10,6 +10,7 @@ use core::ops::Deref;
 use crate::error::{SetupError, StepError};
 use crate::groups::layout::{Factor, FactorKind};
 use crate::groups::{LieGroup, SO3};
+use crate::motion::abreast::{Abreast, Joinable, Joint};
 use crate::motion::integrator::Integrator;
 use crate::motion::plan::Cost;
 use crate::motion::propagator::{Layout, Propagator};
@@ -42,13 +43,31 @@ use nalgebra::Matrix3;
 pub struct AnyStepper {
     propagator: Rc<dyn Propagator>,
     layout: Rc<Layout>,
+    /// The bodies that are stepped together with this one's.
+    joint: Option<Joint>,
 }
 
 impl AnyStepper {
     /// A stepper around this propagator.
     pub fn new(propagator: impl Propagator + 'static) -> Self {
         let layout = Rc::new(propagator.layout().clone());
-        Self { propagator: Rc::new(propagator), layout }
+        Self { propagator: Rc::new(propagator), layout, joint: None }
+    }
+
+    /// A stepper of this propagator, whose bodies can be stepped [together](Self::abreast).
+    pub fn joinable(propagator: impl Joinable) -> Self {
+        let (layout, propagator) = (Rc::new(propagator.layout().clone()), Rc::new(propagator));
+        Self { joint: Some(Joint::of(&propagator)), propagator, layout }
+    }
+
+    /// The longest leading part of these bodies that is stepped together, and its number of bodies; `None` if the first one is
+    /// stepped alone.
+    #[must_use]
+    pub fn abreast(bodies: &[(Self, AnyState)]) -> Option<(Box<dyn Abreast>, usize)> {
+        let joints = bodies.iter().map_while(|(stepper, state)| Some((stepper.joint.as_ref()?, &*state.0.numbers)));
+        let most = bodies.first()?.0.joint.as_ref()?.most;
+        let count = joints.clone().count().min(most);
+        (1..=count).rev().find_map(|count| Some((Joint::together(joints.clone().take(count))?, count)))
     }
 
     /// Names, units and places of a state's numbers.

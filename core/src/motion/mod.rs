@@ -19,9 +19,10 @@
 // The first module, because its page comes first in the documentation.
 mod stepper;
 
+mod abreast;
 mod any;
 mod batch;
-mod declared;
+pub(crate) mod declared;
 #[macro_use]
 mod delegated;
 mod erasure;
@@ -35,9 +36,10 @@ mod propagator;
 mod report;
 mod right_hand_side;
 mod state;
-mod summation;
+pub(crate) mod summation;
 
 pub use crate::groups::layout::{Factor, FactorKind};
+pub use abreast::{Abreast, Joinable};
 pub use any::{AnyMotion, AnyState, AnyStepper};
 pub use batch::{Batch, Batchable};
 pub use declared::OwnStep;

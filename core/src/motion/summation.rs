@@ -9,15 +9,15 @@ use crate::numbers::Real;
 /// The number of steps between two corrections of the attitude's rounding errors.
 ///
 /// Even constant rounding errors of the largest size stay below [`TOLERATED`] over a thousand steps.
-pub(crate) const STEPS_BETWEEN_CHECKS: u32 = 1024;
+pub const STEPS_BETWEEN_CHECKS: u32 = 1024;
 
 /// The number for several bodies. Their internal forces cancel only as far as attitudes are rotations and relative
 /// attitudes agree with them; otherwise the total momentum drifts in proportion to the steps.
-const STEPS_BETWEEN_SEVERAL: u32 = 64;
+pub const STEPS_BETWEEN_SEVERAL: u32 = 64;
 
 /// The tolerated distance of an attitude from its group, in units of rounding. A random walk reaches it in some ten
 /// million steps.
-pub(crate) const TOLERATED: f64 = 2048.0;
+pub const TOLERATED: f64 = 2048.0;
 
 /// Whether the group has several attitudes.
 #[hot]

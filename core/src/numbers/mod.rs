@@ -29,7 +29,7 @@ mod exact;
 mod history;
 mod join;
 mod lanes;
-mod newton;
+pub(crate) mod newton;
 mod registers;
 mod scalar;
 mod simd;

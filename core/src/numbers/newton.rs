@@ -5,17 +5,17 @@ use nalgebra::SimdBool as _;
 
 /// Limit of the iterations. No regular Lagrangian needs as many: Newton's iteration doubles the digits, and a halved
 /// step gains none.
-const MOST_ITERATIONS: u32 = 50;
+pub const MOST_ITERATIONS: u32 = 50;
 /// Limit of the halvings of a step: `2⁻²⁰` of Newton's step is too short for the linear model to predict.
-const MOST_HALVINGS: u32 = 20;
+pub const MOST_HALVINGS: u32 = 20;
 /// Rounding of the residual, in units of the scalar's epsilon and of the size of its terms.
-const ROUNDINGS: f64 = 1e4;
+pub const ROUNDINGS: f64 = 1e4;
 /// Second criterion of convergence: the next step is below this many roundings of the solution. If the derivative is
 /// large, the rounding of the solution leaves a residual above the first criterion.
-const ROUNDINGS_OF_SOLUTION: f64 = 4.0;
+pub const ROUNDINGS_OF_SOLUTION: f64 = 4.0;
 /// Limit of the second criterion: the residual is at most this many times the first one. A derivative without a bound
 /// makes steps short wherever the equation is violated.
-const AT_MOST: f64 = 1e4;
+pub const AT_MOST: f64 = 1e4;
 
 /// The end of [`newton_halving`]; each of several lanes ends as it would alone.
 pub(crate) struct NewtonEnd<T: Real, V> {

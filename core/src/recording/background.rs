@@ -1,8 +1,10 @@
 //! A sink in a thread of its own.
 
+use alloc::format;
 use alloc::vec::Vec;
+use std::io;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::thread::{JoinHandle, spawn};
+use std::thread::{Builder, JoinHandle};
 
 use super::recorder::{Column, RecordError, Sink, SinkError};
 
@@ -17,6 +19,8 @@ pub struct Background<S> {
     /// Written blocks, whose memory is reused.
     written: Receiver<Vec<f64>>,
     thread: Option<JoinHandle<(S, Result<(), SinkError>)>>,
+    /// The reason why no thread has started.
+    refusal: Option<io::Error>,
     /// The sink, returned by the thread.
     sink: Option<S>,
 }
@@ -31,15 +35,19 @@ enum Work {
 const MOST_WAITING: usize = 4;
 
 impl<S: Sink + Send + 'static> Background<S> {
-    /// Starts a thread that writes to the sink.
+    /// Starts a thread that writes to the sink. If the system has none, the first row is an error.
     pub fn new(mut sink: S) -> Self {
         let (work, waiting) = sync_channel(MOST_WAITING);
         let (back, written) = sync_channel(MOST_WAITING + 1);
-        let thread = spawn(move || {
+        let started = Builder::new().spawn(move || {
             let written = write_all(&mut sink, &waiting, &back);
             (sink, written)
         });
-        Self { work: Some(work), written, thread: Some(thread), sink: None }
+        let (thread, refusal) = match started {
+            Ok(thread) => (Some(thread), None),
+            Err(error) => (None, Some(error)),
+        };
+        Self { work: Some(work), written, thread, refusal, sink: None }
     }
 
     /// Returns the sink.
@@ -61,7 +69,10 @@ impl<S: Sink + Send + 'static> Background<S> {
 
     fn join(&mut self) -> Result<(), SinkError> {
         self.work = None;
-        let Some(thread) = self.thread.take() else { return Err("the table is finished".into()) };
+        let Some(thread) = self.thread.take() else {
+            let refusal = self.refusal.take().map(|error| format!("no thread starts: {error}").into());
+            return Err(refusal.unwrap_or_else(|| "the table is finished".into()));
+        };
         let (sink, written) = thread.join().map_err(|_| "the thread that writes the table has panicked")?;
         self.sink = Some(sink);
         written

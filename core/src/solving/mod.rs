@@ -19,5 +19,5 @@ pub use iteration::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_
 pub use largest_step::{largest_fraction, six_digits};
 pub(crate) use problem::{Problem, newton_system, step_terms};
 pub(crate) use reused_jacobian::Curvature;
-pub use reused_jacobian::{has_sufficed, may_suffice, safe};
+pub use reused_jacobian::{NEAR_ENOUGH, SUFFICIENT, has_sufficed, may_suffice, safe};
 pub use solvability::{Solvability, TurningLimits, turning_limits};

@@ -34,6 +34,10 @@ const SAFE: f64 = 1.0 / 16.0;
 /// The `C` that is assumed for a first update: that of the heavy tops of the thesis at common steps. A top with a
 /// larger one wastes a residual in a narrow range of updates.
 const TYPICAL_CURVATURE: f64 = 1.0 / 16.0;
+/// The tolerance of [`may_suffice`], in roundings.
+pub const NEAR_ENOUGH: f64 = 0.5 * REST / TYPICAL_CURVATURE;
+/// The tolerance of [`has_sufficed`], in roundings.
+pub const SUFFICIENT: f64 = 0.5 * REST;
 
 /// The determinant above which a solve needs no second Jacobian, from that of the Jacobian at rest.
 #[must_use]
@@ -94,7 +98,7 @@ impl<G: LieGroup> Lanes<G> {
 #[hot]
 #[must_use]
 pub fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
-    let tolerance = T::simd_default_epsilon() * real(0.5 * REST / TYPICAL_CURVATURE);
+    let tolerance = T::simd_default_epsilon() * real(NEAR_ENOUGH);
     (first * first * first).simd_le(size * (tolerance * tolerance))
 }
 
@@ -102,7 +106,7 @@ pub fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
 #[hot]
 #[must_use]
 pub fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
-    let tolerance = T::simd_default_epsilon() * real(0.5 * REST);
+    let tolerance = T::simd_default_epsilon() * real(SUFFICIENT);
     (second * first.simd_max(second / first)).simd_le(size * (tolerance * tolerance))
 }
 

@@ -2,9 +2,8 @@
 
 use std::time::Instant;
 
-use liestep::motion::Batch;
-use liestep_scene::{LeastWhole, Spread};
-use simba::simd::AutoF64x8;
+use liestep::motion::AnyStepper;
+use liestep_scene::Spread;
 
 use crate::kernel::{Effort, Failure, Group, Kernel};
 
@@ -56,8 +55,7 @@ pub(crate) fn members() -> Result<(), Failure> {
     let draws = "[ensemble]\nmembers = 8000\ndraw.gravity.m = { mean = 1.0, deviation = 0.01 }\n\
                  draw.start.velocity = [0.5, 2, { from = 8.0, to = 12.0 }]\n";
     let scene = liestep_scene::parse("bench.toml", &format!("{}{draws}", text(FILES[1].1)))?;
-    let (drawn, whole): (_, LeastWhole) =
-        (scene.ensemble().ok_or("no ensemble")?, scene.whole().ok_or("not one program")?);
+    let (drawn, whole) = (scene.ensemble().ok_or("no ensemble")?, scene.whole().ok_or("not one program")?);
     let member = |number: u32| {
         let share = f64::from(number) / f64::from(MEMBERS);
         let number = |_: &str, spread: Spread| match spread {
@@ -71,11 +69,11 @@ pub(crate) fn members() -> Result<(), Failure> {
         let clock = Instant::now();
         for lanes in 0..MEMBERS / 8 {
             let eight = (8 * lanes..8 * lanes + 8).map(member).collect::<Result<Vec<_>, _>>()?;
-            batch = Some(Batch::<AutoF64x8, _>::new(&eight)?);
+            batch = AnyStepper::abreast(&eight);
         }
         making = making.min(clock.elapsed().as_secs_f64() * 1e6 / f64::from(MEMBERS));
         let clock = Instant::now();
-        if let Some(batch) = &mut batch {
+        if let Some((batch, 8)) = &mut batch {
             batch.run(MEMBERS.into());
         }
         stepping = stepping.min(clock.elapsed().as_secs_f64() * 1e6 / f64::from(8 * MEMBERS));

@@ -3,12 +3,15 @@
 mod called;
 mod conventions;
 mod ensembles;
+mod groups;
 mod judged;
 mod lagrangian;
 mod mutated;
 mod orbits;
 mod page;
+mod papers;
 mod readme;
+mod reference;
 mod runs;
 mod sessions;
 mod several;

@@ -153,4 +153,4 @@ macro_rules! sessions {
     };
 }
 
-sessions! { calls choices conventions ensembles judged lagrangians orbits replays scenes several }
+sessions! { calls choices conventions ensembles groups judged lagrangians orbits replays scenes several }

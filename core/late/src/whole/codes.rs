@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use liestep::motion::{Cost, Factor, FactorKind, Layout};
+use liestep::numbers::Real;
 use liestep_derivation::whole::{Form, MatrixFactor, Programs, Sizes, WholeStep};
 use liestep_derivation::{Array, Program};
 
-use crate::code::Backend;
+use crate::code::{Backend, UsualStep};
 use crate::declaration::{Declaration, Ready, ready_each};
 use crate::error::LateError;
 
@@ -53,22 +54,37 @@ impl<B: Backend<f64>> Codes<B> {
         Ok(Self { declaration, sizes, factors, rotations, layout, code, operations })
     }
 
+    /// The programs of a usual step.
+    #[inline]
+    pub(super) fn usual(&self) -> UsualStep<'_, B::Code> {
+        let Programs { target, iterate, again, finish, safe, .. } = &self.code;
+        UsualStep {
+            sizes: &self.sizes,
+            is_product: self.is_product(),
+            target: &target.code,
+            iterate: &iterate.code,
+            again: &again.code,
+            finish: &finish.code,
+            safe: safe.as_ref().map(|program| &program.code),
+        }
+    }
+
     pub(super) fn is_product(&self) -> bool {
         self.factors.len() > 1
     }
 
     /// The determinant of a matrix by those of its blocks, relative to the products of their diagonals; negative where one
     /// of these is. A single block's is its own.
-    pub(super) fn determinant(&self, pairs: &[f64]) -> f64 {
+    pub(super) fn determinant<T: Real>(&self, pairs: &[T]) -> T {
         if !self.is_product() {
             return pairs[0];
         }
-        let (mut value, mut is_negative) = (1.0_f64, false);
+        let (mut value, mut is_negative) = (T::one(), T::zero().simd_lt(T::zero()));
         for pair in pairs.chunks_exact(2) {
-            value *= pair[0] / pair[1].abs();
-            is_negative |= pair[0] < 0.0;
+            value *= pair[0] / pair[1].simd_abs();
+            is_negative = is_negative | pair[0].simd_lt(T::zero());
         }
-        if is_negative { -value.abs() } else { value }
+        (-value.simd_abs()).select(is_negative, value)
     }
 
     /// The advected parameters, seen from an attitude.

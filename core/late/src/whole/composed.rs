@@ -75,6 +75,21 @@ impl Stages {
         of_stages + super::step::room(codes)
     }
 
+    /// The constants of a single step; none of a composition.
+    pub(super) fn single(&self) -> Option<&StepConstants> {
+        self.list.is_empty().then(|| self.first())
+    }
+
+    /// A single step that a back end makes in one piece; returns its iterations.
+    #[inline]
+    pub(super) fn step_in_one_piece<B: Backend<f64>>(
+        &self,
+        numbered: Numbered<'_, B>,
+        state: &mut [f64],
+    ) -> Option<u32> {
+        numbered.step_in_one_piece(self.single()?, state)
+    }
+
     /// One step; returns the sum of the iterations. After an error the state is as it was.
     #[inline]
     pub(super) fn step<B: Backend<f64>>(

@@ -1,7 +1,8 @@
 //! The constants of a step of one length, and the bounds that a usual solve stays within.
 
-use liestep::__private::safe;
+use liestep::__private::{RATIO, safe};
 use liestep::SetupError;
+use liestep::numbers::Real;
 use liestep_derivation::Array;
 
 use super::codes::{Codes, rare};
@@ -19,9 +20,6 @@ pub(super) struct StepConstants {
     /// The square of a right side far beyond those of steps that have a solution.
     pub(super) largest_target: f64,
 }
-
-/// The rounding of a right side below this fraction of `1/ε` times the Jacobian at rest doesn't affect that.
-const RATIO: f64 = 1.0 / 4096.0;
 
 impl StepConstants {
     /// Checks the numbers and the step, and folds the constants.
@@ -76,12 +74,22 @@ impl StepConstants {
         advected: &[f64],
         room: &mut [f64],
     ) -> f64 {
-        let Some(program) = &codes.code.safe else { return self.safe };
-        let given = [(Array::Parameters, numbers), (Array::Advected, advected)];
-        let determinants = &mut room[..program.outputs];
-        B::run(&program.code, &[], given, determinants);
-        safe(codes.determinant(determinants))
+        safe_at::<f64, B>(codes, numbers, advected, room).unwrap_or(self.safe)
     }
+}
+
+/// The determinant above which a Jacobian may be used again, where the inertia varies.
+#[inline]
+pub(super) fn safe_at<T, B>(codes: &Codes<B>, numbers: &[T], advected: &[T], room: &mut [T]) -> Option<T>
+where
+    T: Real,
+    B: Backend<f64> + Backend<T, Code = <B as Backend<f64>>::Code>,
+{
+    let program = codes.code.safe.as_ref()?;
+    let given = [(Array::Parameters, numbers), (Array::Advected, advected)];
+    let determinants = &mut room[..program.outputs];
+    <B as Backend<T>>::run(&program.code, &[], given, determinants);
+    Some(safe(codes.determinant(determinants)))
 }
 
 /// The constants of a step `h`, without any check.

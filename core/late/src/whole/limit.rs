@@ -1,5 +1,6 @@
 //! The continuous limit of a declaration at an attitude: momenta and their velocities, the inertia, the energy.
 
+use liestep::__private::velocity::{AT_MOST, MOST_HALVINGS, MOST_ITERATIONS, ROUNDINGS, ROUNDINGS_OF_SOLUTION};
 use liestep::SetupError;
 use liestep_derivation::Array;
 
@@ -14,14 +15,6 @@ pub(super) struct Limit<'a, B: Backend<f64>> {
     pub(super) numbers: &'a [f64],
     pub(super) advected: &'a [f64],
 }
-
-/// Limits of the iterations for a velocity and of the halvings of each, and the roundings that are allowed: of the residual,
-/// of the solution, and the most of the residual then. They are those of the library.
-const MOST_ITERATIONS: u32 = 50;
-const MOST_HALVINGS: u32 = 20;
-const ROUNDINGS: f64 = 1e4;
-const ROUNDINGS_OF_SOLUTION: f64 = 4.0;
-const AT_MOST: f64 = 1e4;
 
 impl<B: Backend<f64>> Limit<'_, B> {
     fn of(&self, program: &Ready<B::Code>, array: Array, value: &[f64]) -> Vec<f64> {

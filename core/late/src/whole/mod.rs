@@ -16,9 +16,10 @@
 //! Deliberately not here: splittings, collocation, joints and systems, densities, compensated sums. They are typed, and
 //! behind the same [`Propagator`](liestep::motion::Propagator).
 //!
-//! The files depend on each other in one direction: `stepper → composed → step → diagnosis → {care → iteration, constants} →
+//! The files depend on each other in one direction: `abreast → stepper → composed → step → diagnosis → {care → iteration, constants} →
 //! limit → {codes, linear}`.
 
+mod abreast;
 mod care;
 mod codes;
 mod composed;
@@ -30,4 +31,5 @@ mod linear;
 mod step;
 mod stepper;
 
+pub use abreast::BackendInLanes;
 pub use stepper::{Whole, WholeError};

@@ -1,6 +1,6 @@
 //! One step of one length: its increment from a state, by the usual solve or with care, and the rare work after it.
 
-use liestep::__private::MAX_ITERATIONS;
+use liestep::__private::{MAX_ITERATIONS, STEPS_BETWEEN_CHECKS, STEPS_BETWEEN_SEVERAL, TOLERATED};
 use liestep::StepError;
 use liestep_derivation::Array;
 
@@ -10,14 +10,7 @@ use super::diagnosis::Step;
 use super::iteration::{Iterates, Problem};
 use super::limit::Limit;
 use super::linear::are_finite;
-use crate::code::Backend;
-
-/// The numbers of steps between two corrections of the attitude's rounding errors, for one and for several rotations, whose
-/// internal forces cancel only as far as they are rotations.
-const STEPS_BETWEEN_CHECKS: u64 = 1024;
-const STEPS_BETWEEN_SEVERAL: u64 = 64;
-/// The tolerated distance of a single attitude from its group, in units of rounding.
-const TOLERATED: f64 = 2048.0;
+use crate::code::{Backend, StepInputs};
 
 /// A declaration's code with numbers for its parameters.
 #[derive(Clone, Copy)]
@@ -64,8 +57,23 @@ impl<'a, B: Backend<f64>> Numbered<'a, B> {
     /// One step with the memory of a single step.
     #[inline]
     pub(super) fn step(self, constants: &StepConstants, state: &mut [f64], room: &mut [f64]) -> Result<u32, StepError> {
+        let made = match self.directly(constants, state, room) {
+            Some(made) => made,
+            None => self.carefully(constants, state)?,
+        };
+        Ok(self.count(made, state))
+    }
+
+    /// The step by the usual solve, where a back end makes that in one piece.
+    #[inline]
+    pub(super) fn step_in_one_piece(self, constants: &StepConstants, state: &mut [f64]) -> Option<u32> {
+        self.in_one_piece(constants, state).map(|made| self.count(made, state))
+    }
+
+    /// Counts a step whose increment was made; returns its iterations.
+    #[inline]
+    fn count(self, Increment { iterations, is_far }: Increment, state: &mut [f64]) -> u32 {
         let (sizes, last) = (&self.codes.sizes, state.len() - 1);
-        let Increment { iterations, is_far } = self.increment(constants, state, room)?;
         if is_far {
             state.copy_within(sizes.history()..sizes.history() + sizes.n, sizes.guess());
         }
@@ -73,7 +81,7 @@ impl<'a, B: Backend<f64>> Numbered<'a, B> {
             self.look(state);
         }
         state[last] += 1.0;
-        Ok(iterations)
+        iterations
     }
 
     /// Advances attitude, momentum and advected parameters from the guess in the state, and extrapolates a parabola to the
@@ -85,10 +93,20 @@ impl<'a, B: Backend<f64>> Numbered<'a, B> {
         state: &mut [f64],
         room: &mut [f64],
     ) -> Result<Increment, StepError> {
-        match self.directly(constants, state, room) {
+        match self.in_one_piece(constants, state).or_else(|| self.directly(constants, state, room)) {
             Some(made) => Ok(made),
             None => self.carefully(constants, state),
         }
+    }
+
+    /// The increment by the usual solve, where a back end makes it in one piece.
+    #[inline]
+    fn in_one_piece(self, constants: &StepConstants, state: &mut [f64]) -> Option<Increment> {
+        let bounds = [constants.safe, constants.largest_target];
+        let inputs = StepInputs { constants: &constants.numbers, parameters: self.numbers, bounds };
+        let made = B::step(&self.codes.usual(), inputs, state);
+        let iterations = u32::try_from(made / 2).ok().filter(|&iterations| iterations > 0)?;
+        Some(Increment { iterations, is_far: made % 2 == 1 })
     }
 
     /// The increment by the usual solve; `None` if anything about it is doubtful.
@@ -177,13 +195,14 @@ impl<'a, B: Backend<f64>> Numbered<'a, B> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
     pub(super) fn is_due(self, steps: f64) -> bool {
         let between = if self.codes.rotations > 1 { STEPS_BETWEEN_SEVERAL } else { STEPS_BETWEEN_CHECKS };
-        (steps as u64).is_multiple_of(between)
+        const { assert!(STEPS_BETWEEN_CHECKS.is_power_of_two() && STEPS_BETWEEN_SEVERAL.is_power_of_two()) };
+        (steps as u64) & (u64::from(between) - 1) == 0
     }
 
     /// The rare work after the first step of a single step, and after a fixed number of further ones.
     #[cold]
     #[inline(never)]
-    fn look(self, state: &mut [f64]) {
+    pub(super) fn look(self, state: &mut [f64]) {
         let sizes = &self.codes.sizes;
         if state[state.len() - 1] == 0.0 {
             // The increment before the first was an estimate.

@@ -57,11 +57,11 @@ use crate::error::LateError;
 /// ```
 #[derive(Debug)]
 pub struct Whole<B: Backend<f64> = Interpreter> {
-    codes: Arc<Codes<B>>,
-    numbers: Arc<[f64]>,
+    pub(super) codes: Arc<Codes<B>>,
+    pub(super) numbers: Arc<[f64]>,
     h: f64,
     method: Method,
-    stages: Stages,
+    pub(super) stages: Stages,
 }
 
 impl<B: Backend<f64>> Clone for Whole<B> {
@@ -101,6 +101,15 @@ impl<B: Backend<f64>> Whole<B> {
             return Err(LateError::Size { name: declaration.name.clone(), expected, found }.into());
         }
         Ok(Self::shared(&Codes::of(declaration)?, numbers.into(), h, method)?)
+    }
+
+    /// Names, units and places of the states of a declaration's steppers, whatever their numbers.
+    ///
+    /// # Errors
+    ///
+    /// The declaration has no kinetic part or is too large.
+    pub fn layout_of(declaration: &'static Declaration) -> Result<Layout, LateError> {
+        Ok(Codes::<B>::of(declaration)?.layout.clone())
     }
 
     /// The stepper of the same declaration and method with other numbers, or another step, by the same code.
@@ -153,9 +162,10 @@ impl<B: Backend<f64>> Whole<B> {
 
     /// Compiles the code of a usual step now that is otherwise compiled after some runs.
     pub fn prepare(&self) {
-        let code = &self.codes.code;
-        let usual = [&code.target, &code.iterate, &code.again, &code.finish].into_iter().chain(&code.safe);
-        usual.for_each(|program| B::prepare(&program.code));
+        let usual = self.codes.usual();
+        if !B::prepare_step(&usual) {
+            usual.programs().for_each(B::prepare);
+        }
     }
 
     /// The state at the start, from an attitude, as the matrices of its factors row by row, and a momentum in the body frame.
@@ -206,7 +216,7 @@ impl<B: Backend<f64>> Whole<B> {
         Ok(report)
     }
 
-    fn numbered(&self) -> Numbered<'_, B> {
+    pub(super) fn numbered(&self) -> Numbered<'_, B> {
         Numbered { codes: &self.codes, numbers: &self.numbers }
     }
 
@@ -259,6 +269,11 @@ impl<B: Backend<f64>> Whole<B> {
             Ok(iterations) => Ok(StepReport::of(iterations)),
             Err(error) => self.in_parts(state, error),
         }
+    }
+
+    /// One step of a state of the right length, by the driver.
+    pub(super) fn step_alone(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
+        self.in_room(|room| self.step_in(state, room))
     }
 
     /// Makes the step in equal parts, if the method says so; otherwise the error, for the whole step.
@@ -367,7 +382,11 @@ impl<B: Backend<f64>> Propagator for Whole<B> {
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
         self.checked(state)?;
-        self.in_room(|room| self.step_in(state, room))
+        // A step in one piece needs no room.
+        if let Some(iterations) = self.stages.step_in_one_piece(self.numbered(), state) {
+            return Ok(StepReport::of(iterations));
+        }
+        self.step_alone(state)
     }
 
     fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
@@ -388,7 +407,11 @@ impl<B: Backend<f64>> Propagator for Whole<B> {
             let mut iterations = 0;
             while steps > 0 {
                 for _ in 0..steps {
-                    iterations += u64::from(self.step_in(state, room)?.iterations);
+                    let made = match self.stages.step_in_one_piece(self.numbered(), state) {
+                        Some(iterations) => iterations,
+                        None => self.step_in(state, room)?.iterations,
+                    };
+                    iterations += u64::from(made);
                 }
                 steps = next(state, self.time(state));
             }

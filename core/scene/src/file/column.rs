@@ -1,27 +1,34 @@
 //! Columns of a run's table: the table `output`.
 
+use std::ops::Range;
+
 use liestep::recording;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::file::group::Group;
 use crate::file::mistake::{Wrong, advised};
 use crate::file::sample::{BodySample, Sample};
 
-use Numbers::{OfBody, OfScene, SinceStart};
+use Numbers::{Change, OfBody, OfScene, Part, SinceStart};
 
 #[doc = include_str!("column.md")]
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Column {
     key: &'static str,
-    names: &'static [&'static str],
-    unit: &'static str,
+    /// The name of each number, and its unit.
+    names: Vec<(String, &'static str)>,
     numbers: Numbers,
 }
 
 /// The function that computes the numbers of a column.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 enum Numbers {
+    /// A part of a sample's numbers on a group.
+    Part(Range<usize>),
+    /// The norm of the change of such a part since the first state of the run; the change itself for one number.
+    Change(Range<usize>),
     OfBody(fn(&BodySample) -> Vec<f64>),
     OfScene(fn(&Sample) -> Vec<f64>),
     /// A difference between a state and the first state of the run.
@@ -29,87 +36,108 @@ enum Numbers {
 }
 
 impl Column {
-    pub(crate) const QUATERNION: Self =
-        Self::new("quaternion", &["q_w", "q_x", "q_y", "q_z"], "1", OfBody(|body| body.quaternion.to_vec()));
-    pub(crate) const VELOCITY: Self = Self::new(
-        "velocity",
-        &["velocity_x", "velocity_y", "velocity_z"],
-        "rad/s",
-        OfBody(|body| three(body.velocity)),
-    );
-    pub(crate) const SPATIAL_MOMENTUM: Self = Self::new(
-        "spatial-momentum",
-        &["spatial_momentum_x", "spatial_momentum_y", "spatial_momentum_z"],
-        "kg m²/s",
-        OfScene(|sample| three(sample.angular_momentum)),
-    );
-    const ENERGY: Self = Self::new("energy", &["energy"], "J", OfScene(|sample| vec![sample.energy]));
-    pub(crate) const ENERGY_ERROR: Self =
-        Self::new("energy-error", &["energy_error"], "J", SinceStart(|first, now| now.energy - first.energy));
-    pub(crate) const MOMENTUM_ERROR: Self = Self::new(
-        "momentum-error",
-        &["momentum_error"],
-        "kg m²/s",
-        SinceStart(|first, now| (now.angular_momentum - first.angular_momentum).norm()),
-    );
+    /// The names of a quaternion's columns.
+    pub(crate) const QUATERNION: [&'static str; 4] = ["q_w", "q_x", "q_y", "q_z"];
+    /// The names of an angular velocity's columns.
+    pub(crate) const VELOCITY: [&'static str; 3] = ["velocity_x", "velocity_y", "velocity_z"];
+    /// The names of the columns of an angular momentum in space.
+    pub(crate) const SPATIAL_MOMENTUM: [&'static str; 3] =
+        ["spatial_momentum_x", "spatial_momentum_y", "spatial_momentum_z"];
 
-    pub(crate) const OF_ONE_BODY: [Self; 9] = [
-        Self::QUATERNION,
-        Self::new("axis", &["axis_x", "axis_y", "axis_z"], "1", OfBody(|body| three(body.matrix().column(2).into()))),
-        Self::VELOCITY,
-        Self::new("momentum", &MOMENTUM, "kg m²/s", OfBody(|body| three(body.momentum))),
-        Self::SPATIAL_MOMENTUM,
-        Self::ENERGY,
-        Self::ENERGY_ERROR,
-        Self::new(
-            "vertical-momentum-error",
-            &["vertical_momentum_error"],
-            "kg m²/s",
-            SinceStart(|first, now| (now.angular_momentum - first.angular_momentum).z),
-        ),
-        Self::MOMENTUM_ERROR,
-    ];
+    /// The columns of a scene on a group.
+    pub(crate) fn of_group(group: &Group) -> Vec<Self> {
+        let named = |quantity: &str, unit: Option<usize>| {
+            let components = group.factors.iter().flat_map(|factor| &factor.components);
+            let column = |(name, units): &(String, [&'static str; 2])| {
+                (format!("{quantity}_{name}"), unit.map_or("", |unit| units[unit]))
+            };
+            components.map(column).collect::<Vec<_>>()
+        };
+        let one = |name: &str, unit| vec![(name.to_owned(), unit)];
+        let of = |key, names, numbers| Self { key, names, numbers };
+        let (energy, in_space) = (group.energy()..group.energy() + 1, group.in_space());
+        let (unit, is_rotation) = (group.unit_of_energy(), group.is_rotation());
+        let unit_of_momentum = if is_rotation { "kg m²/s" } else { "" };
+        let attitude = group.factors.iter().flat_map(liestep::motion::Factor::columns).collect();
+        let mut all = vec![of(if is_rotation { "quaternion" } else { "attitude" }, attitude, Part(group.attitude()))];
+        if is_rotation {
+            let axis = |body: &BodySample| three(body.matrix().column(2).into());
+            all.push(Self::new("axis", &["axis_x", "axis_y", "axis_z"], "1", OfBody(axis)));
+        }
+        all.extend([
+            of("velocity", named("velocity", Some(0)), Part(group.velocity())),
+            of("momentum", named("momentum", Some(1)), Part(group.momentum())),
+            // A unit of a component in space is another where factors of several units make one.
+            of("spatial-momentum", named("spatial_momentum", Some(1)), Part(in_space.clone())),
+            of("energy", one("energy", unit), Part(energy.clone())),
+            of("energy-error", one("energy_error", unit), Change(energy.clone())),
+        ]);
+        if is_rotation {
+            let vertical = |first: &Sample, now: &Sample| (now.angular_momentum - first.angular_momentum).z;
+            all.push(Self::new(
+                "vertical-momentum-error",
+                &["vertical_momentum_error"],
+                "kg m²/s",
+                SinceStart(vertical),
+            ));
+        }
+        all.extend([
+            of("momentum-error", one("momentum_error", unit_of_momentum), Change(in_space)),
+            of("defect", one("defect", "1"), Part(energy.end..energy.end + 1)),
+        ]);
+        all
+    }
 
-    pub(crate) const OF_SEVERAL_BODIES: [Self; 8] = [
-        Self::new("position", &["x", "y", "z"], "m", OfBody(|body| three(body.position))),
-        Self::QUATERNION,
-        Self::VELOCITY,
-        Self::new("moving", &["moving_x", "moving_y", "moving_z"], "m/s", OfBody(|body| three(body.moving))),
-        Self::ENERGY,
-        Self::new("momentum", &MOMENTUM, "kg m/s", OfScene(|sample| three(sample.momentum))),
-        Self::new(
-            "angular-momentum",
-            &["angular_momentum_x", "angular_momentum_y", "angular_momentum_z"],
-            "kg m²/s",
-            OfScene(|sample| three(sample.angular_momentum)),
-        ),
-        Self::new("gap", &["gap"], "m", OfScene(|sample| vec![sample.gap])),
-    ];
+    /// The columns of a scene of several bodies.
+    pub(crate) fn of_several_bodies() -> Vec<Self> {
+        vec![
+            Self::new("position", &["x", "y", "z"], "m", OfBody(|body| three(body.position))),
+            Self::new("quaternion", &Self::QUATERNION, "1", OfBody(|body| body.quaternion.to_vec())),
+            Self::new("velocity", &Self::VELOCITY, "rad/s", OfBody(|body| three(body.velocity))),
+            Self::new("moving", &["moving_x", "moving_y", "moving_z"], "m/s", OfBody(|body| three(body.moving))),
+            Self::new("energy", &["energy"], "J", OfScene(|sample| vec![sample.energy])),
+            Self::new("momentum", &MOMENTUM, "kg m/s", OfScene(|sample| three(sample.momentum))),
+            Self::new(
+                "angular-momentum",
+                &["angular_momentum_x", "angular_momentum_y", "angular_momentum_z"],
+                "kg m²/s",
+                OfScene(|sample| three(sample.angular_momentum)),
+            ),
+            Self::new("gap", &["gap"], "m", OfScene(|sample| vec![sample.gap])),
+        ]
+    }
 
-    const fn new(key: &'static str, names: &'static [&'static str], unit: &'static str, numbers: Numbers) -> Self {
-        Self { key, names, unit, numbers }
+    fn new(key: &'static str, names: &[&str], unit: &'static str, numbers: Numbers) -> Self {
+        Self { key, names: names.iter().map(|name| ((*name).to_owned(), unit)).collect(), numbers }
     }
 
     /// The column's key in a file.
     #[must_use]
-    pub const fn key(self) -> &'static str {
+    pub const fn key(&self) -> &'static str {
         self.key
     }
 
     /// The names of the column's numbers in the head of a table. With several bodies, the body's name precedes them.
-    #[must_use]
-    pub const fn names(self) -> &'static [&'static str] {
-        self.names
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.names.iter().map(|(name, _)| name.as_str())
     }
 
     /// Whether the column measures from the start of a run, so that a state alone doesn't determine it.
-    pub(crate) const fn is_since_the_start(self) -> bool {
-        matches!(self.numbers, SinceStart(_))
+    pub(crate) const fn is_since_the_start(&self) -> bool {
+        matches!(self.numbers, SinceStart(_) | Change(_))
+    }
+
+    /// The place of a number of this name in a sample.
+    pub(crate) fn place(&self, name: &str) -> Option<usize> {
+        let Part(part) = &self.numbers else { return None };
+        self.names().position(|own| own == name).map(|at| part.start + at)
     }
 
     /// The numbers of these columns in the state `now` of a run that started from `first`.
     pub(crate) fn row(columns: &[Self], first: &Sample, now: &Sample) -> Vec<f64> {
-        let numbers = |column: &Self| match column.numbers {
+        let numbers = |column: &Self| match &column.numbers {
+            Part(part) => now.numbers[part.clone()].to_vec(),
+            Change(part) => vec![change(&first.numbers[part.clone()], &now.numbers[part.clone()])],
             OfBody(numbers) => now.bodies.iter().flat_map(numbers).collect(),
             OfScene(numbers) => numbers(now),
             SinceStart(number) => vec![number(first, now)],
@@ -122,7 +150,10 @@ impl Column {
         let mut all = Vec::new();
         for column in columns {
             let mut add = |before: &str, body| {
-                let named = |name| recording::Column { name: format!("{before}{name}"), unit: column.unit.to_owned() };
+                let named = |(name, unit): &(String, &str)| recording::Column {
+                    name: format!("{before}{name}"),
+                    unit: (*unit).to_owned(),
+                };
                 all.extend(column.names.iter().map(|name| (named(name), body)));
             };
             match column.numbers {
@@ -133,6 +164,14 @@ impl Column {
             }
         }
         all
+    }
+}
+
+/// The change of a number, or the norm of that of several.
+fn change(first: &[f64], now: &[f64]) -> f64 {
+    match (first, now) {
+        ([first], [now]) => now - first,
+        _ => first.iter().zip(now).map(|(first, now)| (now - first).powi(2)).sum::<f64>().sqrt(),
     }
 }
 
@@ -179,7 +218,7 @@ pub(crate) fn picture_stride(steps: u64) -> u64 {
 impl Output {
     /// The columns by their keys among the known ones, or the default.
     pub(crate) fn columns(&self, known: &[Column], default: &[&str]) -> Result<Vec<Column>, Wrong> {
-        let find = |key: &str| known.iter().find(|column| column.key == key).copied();
+        let find = |key: &str| known.iter().find(|column| column.key == key).cloned();
         let Some(keys) = &self.columns else { return Ok(default.iter().filter_map(|key| find(key)).collect()) };
         let column = |key: &Spanned<String>| {
             find(key.get_ref()).ok_or_else(|| {

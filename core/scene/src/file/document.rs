@@ -1,37 +1,54 @@
 //! The scene of a document: its tables are read first, then checked against each other.
 
+use std::ops::Range;
 use std::path::Path;
 
 use liestep::with::Scheme;
 use liestep_derivation::Role;
+use liestep_late::{Declaration, LateError};
 use serde::Deserialize as _;
+use toml::Spanned;
 use toml::de::Deserializer;
 
+use crate::file::beginning::Beginning;
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
 use crate::file::effects::Table as _;
-use crate::file::lagrangian::take;
+use crate::file::group::Group;
+use crate::file::lagrangian::{Declared, take};
 use crate::file::method::kind;
 use crate::file::mistake::{Mistake, Wrong, place_of};
+use crate::file::picture::{Curve, SpherePicture};
 use crate::file::scene::{Origin, Places, SceneFile};
 use crate::file::schedule::{Pace, equal_steps, fraction};
 use crate::file::tables::{Document, span};
+use crate::file::words::in_files;
 
 /// The scene of a document without a sweep and an ensemble.
 pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<SceneFile, Mistake> {
     let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
     let mut rest = document.clone();
-    let lagrangian = take(&mut rest, Role::Lagrangian).map_err(located)?;
-    let force = take(&mut rest, Role::Force).map_err(located)?;
+    let mut on = None;
+    let lagrangian = take(&mut rest, Role::Lagrangian, &mut on).map_err(located)?;
+    let force = take(&mut rest, Role::Force, &mut on).map_err(located)?;
     if let Some(name) = named_method(&rest) {
         return Err(located((span(document, &["run", "method"]), format!("`{name}` {METHODS}"))));
     }
     let mut file =
         SceneFile::deserialize(Deserializer::from(rest)).map_err(|error| Mistake::of_toml(path, text, &error))?;
-    if file.body.is_none() && lagrangian.is_none() {
+    if file.body.is_none() && lagrangian.is_empty() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
     (file.lagrangian, file.force) = (lagrangian, force);
+    add(document, &mut file).map_err(located)?;
+    if let Some(start) = document.get_ref().get("start") {
+        file.start = Beginning::read(start, &file.group).map_err(located)?;
+    }
+    let events = document.get_ref().get("event").and_then(|events| events.get_ref().as_array());
+    for (number, event) in file.event.iter_mut().enumerate() {
+        let at = || events.and_then(|events| events.get(number)).map_or(0..0, Spanned::span);
+        event.placed(&file.group, &at).map_err(located)?;
+    }
     if let Some(steps) = file.run.steps_per_orbit {
         let wrong = |message: String| located((span(document, &["run", "steps_per_orbit"]), message));
         if has(document, "run", "step") || has(document, "run", "accuracy") {
@@ -42,21 +59,73 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
         file.run.pace = Pace::Step { step, steps: equal_steps(step, file.run.duration).map_err(wrong)? };
     }
     at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
-    let default = ["velocity", "spatial-momentum", "energy", "axis", "quaternion"];
-    file.columns = file.output.columns(&Column::OF_ONE_BODY, &default).map_err(located)?;
+    if !file.group.is_rotation() && !has(document, "picture", "panels") {
+        file.picture = SpherePicture::on_group();
+    }
+    let default = ["velocity", "spatial-momentum", "energy", "axis", "quaternion", "attitude"];
+    file.columns = file.output.columns(&Column::of_group(&file.group), &default).map_err(located)?;
     let at = |keys: &[&str]| place_of(text, &span(document, keys));
     let keys = ["accuracy", "steps_per_orbit"];
     let pace = keys.into_iter().find(|key| has(document, "run", key)).unwrap_or("step");
-    let body = if file.lagrangian.is_some() { "lagrangian" } else { "body" };
+    let body = if file.body.is_none() { "lagrangian" } else { "body" };
     let places = Places {
         body: at(&[body]),
         start: at(&["start"]),
+        attitude: at(&["start", "attitude"]),
         pace: at(&["run", pace]),
         method: at(&["run", "method"]),
         spring: at(&["spring"]),
     };
     file.origin = Origin { path: path.to_owned(), places };
     Ok(file)
+}
+
+/// Adds the terms of a file with a Lagrangian that has the kinetic energy, and finds the group.
+fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), Wrong> {
+    let own = || file.lagrangian.iter().chain(&file.force);
+    let of_term = |place: &Range<usize>, error: LateError| (place.clone(), in_files(&error.to_string()));
+    let is_of_body = |one: &Declared| one.declaration.group() == "SO3";
+    if file.body.is_some() {
+        if let Some(one) = file.lagrangian.iter().find(|one| one.declaration.has_kinetic) {
+            let message = "this `lagrangian` has a kinetic energy, and the `body` another: leave one of both out";
+            let at = if file.lagrangian.len() > 1 { one.span.clone() } else { span(document, &["body"]) };
+            return Err((at, message.to_owned()));
+        }
+        return match own().find(|one| !is_of_body(one)) {
+            Some(one) => {
+                Err((one.span.clone(), "a `body` is on `SO3`, and so are its own Lagrangians and forces".to_owned()))
+            }
+            None => Ok(()),
+        };
+    }
+    if let (Some((effect, _)), Some(one)) = (file.effects().next(), own().find(|one| !is_of_body(one))) {
+        let message = format!(
+            "{} acts on a body on `SO3`, and the scene is on `{}`: write it into the text of the `lagrangian`",
+            effect.name(" "),
+            one.declaration.group()
+        );
+        return Err((span(document, &[effect.key]), message));
+    }
+    let first = file.lagrangian[0].span.clone();
+    let library = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
+    let lagrangians = file.lagrangian.iter().map(|own| Ok(own.declaration));
+    let forces = file.force.iter().map(|own| Ok(own.declaration));
+    let terms = lagrangians.chain(library).chain(forces).collect::<Result<Vec<_>, _>>();
+    let terms = terms.map_err(|error| of_term(&first, error))?;
+    let is_other = |one: &&Declared| one.declaration.factors != file.lagrangian[0].declaration.factors;
+    if let Some(one) = own().find(is_other) {
+        return Err((one.span.clone(), "the terms of a scene are on one group, and this one is on another".to_owned()));
+    }
+    let sum = Declaration::sum(&terms).map_err(|error| of_term(&first, error))?;
+    if !sum.has_kinetic {
+        let message = "nothing moves by a potential alone: a `lagrangian` has a kinetic energy, or the file a `body`";
+        return Err((first, message.to_owned()));
+    }
+    if sum.energy.is_none() {
+        file.group = Group::of(sum, file.lagrangian[0].increments.clone()).map_err(|error| of_term(&first, error))?;
+    }
+    file.sum = Some(sum);
+    Ok(())
 }
 
 const METHODS: &str = "is no method of a scene: `method` is \"step\", or a table as `{ composition = \"Suzuki 4\" }`, \
@@ -75,7 +144,7 @@ fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
 
 /// Conflicts between keys that are valid by themselves.
 fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
-    let of = [of_pace, of_orbit, of_density, of_method];
+    let of = [of_pace, of_orbit, of_density, of_method, of_picture];
     of.iter().find_map(|odds| odds(document, file))
 }
 
@@ -109,6 +178,20 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
         }
     }
     None
+}
+
+/// Conflicts of a picture with a group that has no sphere.
+fn of_picture(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+    if file.group.is_rotation() {
+        return None;
+    }
+    let wrong = |key: &str, message: &str| Some((span(document, &["picture", key]), message.to_owned()));
+    if let Some(key) = ["path", "axis"].into_iter().find(|key| has(document, "picture", key)) {
+        return wrong(key, "only a body on `SO3` has a path on a sphere: on this group a picture has `panels` alone");
+    }
+    let of_body = |curve: &Curve| matches!(curve, Curve::Tilt | Curve::VerticalMomentumError);
+    file.picture.panels.iter().any(of_body).then_some(())?;
+    wrong("panels", "`tilt` and `vertical-momentum-error` are those of a body on `SO3`: leave them out on this group")
 }
 
 /// Conflicts with effects that vary along an orbit.
@@ -153,44 +236,44 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
 
 /// Conflicts with a density of steps.
 fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
-    let has_a_pace = file.lagrangian.as_ref().is_some_and(|own| own.has_a_pace);
-    let turns = file.turning().next().is_some();
+    let (has_a_pace, turns) = (file.paced().is_some(), file.turning().next().is_some());
     let beside = [
         (!has(document, "run", "step"), "the first `step`: give one in the place of `accuracy` and `steps_per_orbit`"),
         (has(document, "run", "method"), "the scene's own step: leave `method` out"),
         (turns, "what doesn't change with time: what turns with an orbit has `steps_per_orbit`"),
         (has_a_pace, "what has no `pace`: leave one of both out"),
+        (!file.group.is_rotation(), "a motion on `SO3`: leave it out"),
     ];
     let (_, what) = file.run.density.and_then(|_| beside.into_iter().find(|(is_odd, _)| *is_odd))?;
     Some((span(document, &["run", "density"]), format!("a `density` is around {what}")))
 }
 
-/// Conflicts with a method; a Lagrangian's come first.
+/// Conflicts with a method; those of a Lagrangian come first.
 fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     let method = &file.run.method;
-    if let Some(lagrangian) = &file.lagrangian {
-        if let Some((effect, _)) = file.effects().next() {
-            let message = format!("a `lagrangian` has all its terms in its text: write {} there", effect.name(" "));
-            return wrong(&[effect.key], message);
+    if file.paced().is_some() {
+        let beside = file.effects().next().map(|(effect, _)| effect.key);
+        let several = (file.lagrangian.len() > 1).then_some("lagrangian");
+        if let Some(key) = beside.or(several).or((!file.force.is_empty()).then_some("force")) {
+            let message = "a pace is that of the whole motion: its Lagrangian has all terms in its text, and no force";
+            return wrong(&[key], message.to_owned());
         }
         if let Pace::Accuracy(_) = file.run.pace {
-            let message = "an accuracy chooses a method for the library's bodies; give a `step` to a `lagrangian`";
+            let message = "an accuracy chooses a method for equal steps, and those of a `pace` vary: give a `step`";
             return wrong(&["run", "accuracy"], message.to_owned());
         }
-        if lagrangian.has_a_pace && file.force.is_some() {
-            let message = "a pace is that of the whole motion, and a force has another time: leave one of both out";
-            return wrong(&["force"], message.to_owned());
-        }
-        if lagrangian.has_a_pace && !matches!(method, Scheme::Step) {
+        if !matches!(method, Scheme::Step) {
             let message = "a pace is that of the Lagrangian's own step: leave `method` out";
             return wrong(&["run", "method"], message.to_owned());
         }
+    }
+    if let Some(sum) = file.sum {
         if !matches!(method, Scheme::Step | Scheme::Composition(_)) {
             let message = format!("{} moves a body of the library; leave it out", kind(method));
             return wrong(&["run", "method"], message);
         }
-        if matches!(method, Scheme::Composition(_)) && !lagrangian.declaration.is_self_adjoint {
+        if matches!(method, Scheme::Composition(_)) && !sum.is_self_adjoint && file.first_force().is_none() {
             let message = "only steps that undo those of −h can be composed, and those of this Lagrangian don't";
             return wrong(&["run", "method"], message.to_owned());
         }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use toml::Spanned;
-use toml::de::{DeArray, DeTable, DeValue, ValueDeserializer};
+use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::file::document::scene;
 use crate::file::draws::{Axis, Component, DRAW, SceneEnsemble, Spread, parts};
@@ -64,8 +64,7 @@ impl SceneEnsemble {
         };
         let mut own = SceneFile::clone(own);
         for (name, table) in varied {
-            let read = own.set(name.get_ref(), ValueDeserializer::from(table));
-            read.map_err(|error| Mistake::of_toml(&self.path, &self.text, &error))?;
+            own.set(name.get_ref(), &table).map_err(located)?;
         }
         Ok(own)
     }
@@ -84,14 +83,14 @@ pub(crate) fn read(
     if file.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
     }
-    let has_a_pace = file.lagrangian.as_ref().is_some_and(|own| own.has_a_pace);
+    let has_a_pace = file.paced().is_some();
     if has_a_pace || file.run.density.is_some() {
         let keys = if has_a_pace { ["lagrangian", "pace"] } else { ["run", "density"] };
         let why = "members make the same number of steps, and those of a";
         return wrong(&keys, format!("{why} `{}` end at different times: leave it out", keys[1]));
     }
     if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
-        let names = column.names().join(", ");
+        let names = column.names().collect::<Vec<_>>().join(", ");
         let why = "is measured from the start of a run; leave it out";
         return wrong(&["output", "columns"], format!("an ensemble keeps states, and `{names}` {why}"));
     }

@@ -1,8 +1,14 @@
 //! Events: the tables `[[event]]`.
 
-use serde::Deserialize;
+use std::ops::Range;
 
-use crate::file::quantity::{Angle, Energy, Number, Positive, Rate, Scalar};
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::file::column::Column;
+use crate::file::group::Group;
+use crate::file::mistake::{Wrong, advised};
+use crate::file::quantity::{Angle, Any, Energy, Number, Positive, Rate, Scalar};
 
 /// An event to be detected along a run: a quantity passes a value.
 #[derive(Clone, Debug, Deserialize)]
@@ -10,6 +16,8 @@ use crate::file::quantity::{Angle, Energy, Number, Positive, Rate, Scalar};
 pub(crate) struct Event {
     pub(crate) name: String,
     pub(crate) quantity: Quantity,
+    /// The name of a column, whose place is found when the group is known.
+    pub(crate) column: Option<Spanned<String>>,
     pub(crate) direction: Direction,
     pub(crate) stops: bool,
 }
@@ -22,6 +30,8 @@ pub(crate) enum Quantity {
     Energy(f64),
     Velocity(usize, f64),
     Axis(usize, f64),
+    /// A number of a sample by its place.
+    Column(usize, f64),
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
@@ -46,6 +56,8 @@ struct EventTable {
     axis_x: Option<Scalar<Number>>,
     axis_y: Option<Scalar<Number>>,
     axis_z: Option<Scalar<Number>>,
+    column: Option<Spanned<String>>,
+    value: Option<Scalar<Any>>,
     #[serde(default)]
     direction: Direction,
     #[serde(default)]
@@ -66,18 +78,49 @@ impl TryFrom<EventTable> for Event {
             table.axis_x.map(|part| Quantity::Axis(0, part.value)),
             table.axis_y.map(|part| Quantity::Axis(1, part.value)),
             table.axis_z.map(|part| Quantity::Axis(2, part.value)),
+            table.column.as_ref().map(|_| Quantity::Column(0, table.value.map_or(0.0, |value| value.value))),
         ]
         .into_iter()
         .flatten();
         let (Some(quantity), None) = (quantities.next(), quantities.next()) else {
             return Err("an event has one of `tilt`, `speed`, `energy`, `velocity_x`, `velocity_y`, `velocity_z`, \
-                        `axis_x`, `axis_y`, `axis_z`");
+                        `axis_x`, `axis_y`, `axis_z`, or a `column` with a `value`");
         };
+        if table.value.is_some() && table.column.is_none() {
+            return Err("a `value` is that of a `column`, as in `column = \"x_2\", value = 0.5`");
+        }
         // An event's name is the name of a column.
         let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);
         if table.name.is_empty() || !table.name.chars().all(is_plain) {
             return Err("the `name` of an event has letters, digits, - and _ only");
         }
-        Ok(Self { name: table.name, quantity, direction: table.direction, stops: table.stop })
+        Ok(Self { name: table.name, quantity, column: table.column, direction: table.direction, stops: table.stop })
+    }
+}
+
+impl Event {
+    /// Finds the place of a column on a group, or refuses the quantity of a body on another one.
+    pub(crate) fn placed(&mut self, group: &Group, at: &dyn Fn() -> Range<usize>) -> Result<(), Wrong> {
+        let Some(name) = &self.column else {
+            let is_known = group.is_rotation() || matches!(self.quantity, Quantity::Energy(_));
+            let message = "only a body on `SO3` has this quantity: on another group an event has a `column` with a \
+                           `value`, or an `energy`";
+            return if is_known { Ok(()) } else { Err((at(), message.to_owned())) };
+        };
+        // A quaternion has two signs, and no values that are passed.
+        let columns = Column::of_group(group);
+        let is_whole = |place: usize| !group.quaternions.iter().any(|start| (*start..start + 4).contains(&place));
+        let found = columns.iter().find_map(|column| column.place(name.get_ref())).filter(|place| is_whole(*place));
+        let Some(place) = found else {
+            let names = columns.iter().flat_map(|column| column.names().map(move |name| (name, column.place(name))));
+            let names = names.filter(|(_, place)| place.is_some_and(is_whole)).map(|(name, _)| format!("`{name}`"));
+            let names = names.collect::<Vec<_>>().join(", ");
+            let message = format!("unknown variant `{}`, expected one of {names}", name.get_ref());
+            return Err((name.span(), advised(&message)));
+        };
+        if let Quantity::Column(own, _) = &mut self.quantity {
+            *own = place;
+        }
+        Ok(())
     }
 }

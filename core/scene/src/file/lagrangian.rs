@@ -1,22 +1,23 @@
-//! The table of a Lagrangian or a force of the file's own: its text is derived, and its parameters have numbers.
+//! The tables of Lagrangians and forces of the file's own: their texts are derived, and their parameters have numbers.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use liestep::SO3;
 use liestep::groups::Given;
-use liestep::mechanics::{Effect as _, Inertia, KineticPart, Term as _, WithKinetic, WithoutKinetic};
+use liestep::mechanics::WithKinetic;
+use liestep::motion::Propagator as _;
 use liestep_derivation::Role;
-use liestep_late::{Declaration, Late, LateError};
+use liestep_late::{Declaration, Late, LateError, Whole};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
-use toml::de::{DeTable, DeValue, Error, ValueDeserializer};
+use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-use crate::file::body::{Full, Moments};
-use crate::file::mistake::{Wrong, advised};
-use crate::file::quantity::{Any, Scalar};
+use crate::file::mistake::Wrong;
+use crate::file::parameter::{Parameter, in_value};
+use crate::file::quantity::{Number, Scalar};
 use crate::file::tables::Document;
+use crate::file::words::in_files;
 
 /// The backend of programs: machine code with the feature `machine`, an interpreter without. Results agree to the bit.
 #[cfg(feature = "machine")]
@@ -24,223 +25,339 @@ pub(crate) type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
 pub(crate) type Backend = liestep_late::Interpreter;
 
-/// The advected vectors of a Lagrangian, up to four; unused ones are zero.
-type Seen = (Vector3<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
-
 /// The energy of a motion with a pace, and up to three advected vectors.
 type SeenWithEnergy = (Given<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
-/// A Lagrangian or a force on SO(3), with the numbers of its parameters.
+/// A Lagrangian or a force, with the numbers of its parameters.
 #[derive(Clone)]
 pub(crate) struct Declared {
     pub(crate) declaration: &'static Declaration,
     pub(crate) numbers: Vec<f64>,
     pub(crate) has_a_pace: bool,
+    /// The names of the increments of a product's factors; empty for one factor.
+    pub(crate) increments: Vec<String>,
+    /// The place of its table.
+    pub(crate) span: Range<usize>,
 }
 
 impl Declared {
-    /// The effect with this kinetic part.
-    pub(crate) fn late<K: KineticPart>(&self) -> Result<Late<SO3, Seen, K, Backend>, LateError> {
-        Late::of(self.declaration)?.with_all(&self.numbers)
-    }
-
     /// The effect with a pace, which advects its energy, too.
     pub(crate) fn paced(&self) -> Result<Late<SO3, SeenWithEnergy, WithKinetic, Backend>, LateError> {
         Late::of(self.declaration)?.with_all(&self.numbers)
     }
 
-    /// The inertia of the continuous limit at the identity attitude.
+    /// The inertia of a body's continuous limit at the identity attitude.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
-        if self.has_a_pace {
-            return self.paced().ok().map(|late| late.inertia(&late.advected()));
-        }
-        self.late::<WithKinetic>().ok().map(|late| late.inertia(&late.advected()))
+        let whole =
+            Whole::<Backend>::of(self.declaration, &self.numbers, 1.0, liestep::with::Method::default()).ok()?;
+        let momentum = |velocity: Vector3<f64>| {
+            let state = whole.start(Matrix3::identity().as_slice(), velocity.as_slice()).ok()?;
+            Some(Vector3::from_column_slice(&state[whole.layout().momentum()]))
+        };
+        let bias = momentum(Vector3::zeros())?;
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| Some(momentum(axis)? - bias));
+        let matrix = Matrix3::from_columns(&[x?, y?, z?]);
+        Some((matrix + matrix.transpose()) * 0.5)
     }
 }
 
-const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may have a `pace`, `advected`, as in \
-                    `advected = { w = \"up\" }`, and has a key for each parameter";
+const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may have a `group` with `generators`, a `pace`, \
+                    `advected`, as in `advected = { w = \"up\" }`, and has a key for each parameter";
 const KEYS_OF_FORCES: &str = "a force has `work`; it may have `advected`, as in `advected = { w = \"up\" }`, and has a \
                               key for each parameter";
+const GROUP: &str = "a group is a name, as \"SE3\", or a table of a product's increments, as `{ F = \"SO3\", d = \"R3\" }`; \
+                     one of your own has a name of its own and its `generators`";
 
 /// Field name for the energy of a motion with a pace.
 const ENERGY: &str = "E_0_of_the_start";
 
-/// A parameter: its type in the declaration, and its numbers.
-struct Parameter {
-    name: String,
-    kind: &'static str,
-    numbers: Vec<f64>,
-}
-
-/// Deserialises nothing, as [`take`] removes the table first. Messages that list all keys need the key.
+/// Deserialises nothing, as [`take`] removes the tables first. Messages that list all keys need the key.
 #[allow(clippy::unnecessary_wraps)] // serde requires a `Result`
-pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Option<Declared>, D::Error> {
-    Ok(None)
+pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Vec<Declared>, D::Error> {
+    Ok(Vec::new())
 }
 
-/// Removes the table of a Lagrangian or a force from a document, and reads it.
-pub(crate) fn take(document: &mut Document<'_>, role: Role) -> Result<Option<Declared>, Wrong> {
+/// A group as it is declared, and the names of its increments.
+#[derive(Clone)]
+pub(crate) struct Place {
+    group: String,
+    generators: String,
+    increments: Vec<String>,
+}
+
+/// Removes the tables of Lagrangians or of forces from a document, and reads them. A table without a group is on the
+/// group of the ones before, and the first one on SO(3).
+pub(crate) fn take(document: &mut Document<'_>, role: Role, on: &mut Option<Place>) -> Result<Vec<Declared>, Wrong> {
     let name = if role == Role::Force { "force" } else { "lagrangian" };
-    let Some((key, table)) = document.get_mut().remove_entry(name) else { return Ok(None) };
-    let DeValue::Table(table) = table.get_ref() else {
-        return Err((key.span(), format!("`{name}` is a table")));
+    let Some((key, tables)) = document.get_mut().remove_entry(name) else { return Ok(Vec::new()) };
+    let one = |table: &Spanned<DeValue<'_>>, span: Range<usize>, on: &mut Option<Place>| match table.get_ref() {
+        DeValue::Table(table) => Text::of(table, span, role, on)?.declared(),
+        _ => Err((span, format!("`{name}` is a table"))),
     };
-    if let Some((other, _)) = document.get_ref().get_key_value("body").filter(|_| role == Role::Lagrangian) {
-        return Err((other.span(), "a `lagrangian` has its kinetic energy itself: leave `body` out".to_owned()));
+    match tables.get_ref() {
+        DeValue::Array(several) => several.iter().map(|table| one(table, table.span(), on)).collect(),
+        _ => Ok(vec![one(&tables, key.span(), on)?]),
     }
-    read(table, &key.span(), role).map(Some)
 }
 
-/// The declaration's arguments before the expression and before the advected vectors; the expression, and its place.
-type Expression = ([String; 2], (String, Range<usize>));
+/// A line of a declaration, the value in the file that it is made of, and whether its columns are those of a text.
+struct Line {
+    text: String,
+    at: Range<usize>,
+    is_verbatim: bool,
+}
 
-fn expression(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Expression, Wrong> {
-    let text = |key: &str| match table.get(key) {
-        Some(value) => match value.get_ref() {
+/// A table, with its declaration line by line.
+struct Text<'t, 'a> {
+    table: &'t DeTable<'a>,
+    /// The place of its key.
+    span: Range<usize>,
+    role: Role,
+    lines: Vec<Line>,
+    parameters: Vec<Parameter>,
+    increments: Vec<String>,
+    has_a_pace: bool,
+}
+
+impl<'t, 'a> Text<'t, 'a> {
+    fn of(table: &'t DeTable<'a>, span: Range<usize>, role: Role, on: &mut Option<Place>) -> Result<Self, Wrong> {
+        let own = [table.get("group"), table.get("generators")];
+        let place = match (own, on.clone()) {
+            ([None, None], Some(before)) => before,
+            ([group, generators], _) => placed(group, generators)?,
+        };
+        *on = Some(place.clone());
+        let group_at = own[0].map_or_else(|| span.clone(), Spanned::span);
+        let generators_at = own[1].map_or_else(|| group_at.clone(), Spanned::span);
+        let mut text = Self {
+            table,
+            span,
+            role,
+            lines: Vec::new(),
+            parameters: Vec::new(),
+            increments: place.increments,
+            has_a_pace: false,
+        };
+        text.line(&format!("group{},", place.group), group_at);
+        text.line(&place.generators, generators_at);
+        text.read_head()?;
+        text.read_parameters()?;
+        Ok(text)
+    }
+
+    fn line(&mut self, text: &str, at: Range<usize>) {
+        self.lines.push(Line { text: text.replace(['\n', '\r'], " "), at, is_verbatim: false });
+    }
+
+    /// The text of a key, with its place.
+    fn text(&self, key: &str) -> Result<Option<(String, Range<usize>)>, Wrong> {
+        let Some(value) = self.table.get(key) else { return Ok(None) };
+        match value.get_ref() {
             DeValue::String(text) => Ok(Some((text.to_string(), value.span()))),
             _ => Err((value.span(), format!("`{key}` is a text"))),
-        },
-        None => Ok(None),
-    };
-    if let Some((group, span)) = text("group")?
-        && group != "SO3"
-    {
-        return Err((span, "a file's Lagrangian is on `SO3`; on other groups it is declared in a program".to_owned()));
-    }
-    if role == Role::Force {
-        let work = text("work")?.ok_or_else(|| (place.clone(), KEYS_OF_FORCES.to_owned()))?;
-        return Ok((["work".to_owned(), String::new()], work));
-    }
-    let [l_d, l, velocity, discretise, pace] = ["l_d", "l", "velocity", "discretise", "pace"].map(text);
-    // The energy comes first, so that any number of advected vectors can follow.
-    let pace = pace?.map(|(pace, _)| format!("given(E_0 = {ENERGY}), pace = {{ {pace} }}, ")).unwrap_or_default();
-    match (l_d?, l?, discretise?) {
-        (Some(l_d), None, None) => Ok((["l_d".to_owned(), pace], l_d)),
-        (None, Some(l), Some((discretise, _))) => {
-            let velocity = velocity?.map_or_else(|| "Omega".to_owned(), |(name, _)| name);
-            Ok(([format!("velocity = {velocity}, discretise = {discretise}, l"), pace], l))
         }
-        _ => Err((place.clone(), KEYS.to_owned())),
+    }
+
+    /// Adds `key(a, b)` for the names of a product's factors, and `key = a` for one.
+    fn read_names(&mut self, key: &str, default: Option<&str>) -> Result<(), Wrong> {
+        let (names, at) = match self.table.get(key) {
+            None => (default.map(str::to_owned).into_iter().collect(), self.span.clone()),
+            Some(value) => (names(value, key)?, value.span()),
+        };
+        let is_product = !self.increments.is_empty();
+        match names.as_slice() {
+            [] => {}
+            [one] if !is_product => self.line(&format!("{key} = {one},"), at),
+            // The default of a product has no names.
+            [_] if is_product && self.table.get(key).is_none() => {}
+            several => self.line(&format!("{key}({}),", several.join(", ")), at),
+        }
+        Ok(())
+    }
+
+    fn read_head(&mut self) -> Result<(), Wrong> {
+        if let Some((pace, at)) = self.text("pace")?.filter(|_| self.role != Role::Force) {
+            // The energy comes first, so that any number of advected vectors can follow.
+            self.line(&format!("given(E_0 = {ENERGY}), pace = {{ {pace} }},"), at);
+            self.has_a_pace = true;
+        }
+        if let Some(value) = self.table.get("advected") {
+            self.line(&advected(value)?, value.span());
+        }
+        let (key, (expression, at)) = if self.role == Role::Force {
+            self.read_names("displacement", None)?;
+            ("work", self.text("work")?.ok_or_else(|| (self.span.clone(), KEYS_OF_FORCES.to_owned()))?)
+        } else {
+            match (self.text("l_d")?, self.text("l")?, self.text("discretise")?) {
+                (Some(l_d), None, None) => ("l_d", l_d),
+                (None, Some(l), Some((discretise, at))) => {
+                    self.read_names("velocity", Some("Omega"))?;
+                    self.line(&format!("discretise = {discretise},"), at);
+                    ("l", l)
+                }
+                _ => return Err((self.span.clone(), KEYS.to_owned())),
+            }
+        };
+        self.line(&format!("{key} ="), at.clone());
+        let lines =
+            expression.split('\n').map(|line| Line { text: line.to_owned(), at: at.clone(), is_verbatim: true });
+        self.lines.extend(lines);
+        Ok(())
+    }
+
+    fn read_parameters(&mut self) -> Result<(), Wrong> {
+        let known: &[&str] = match self.role {
+            Role::Force => &["group", "generators", "work", "displacement", "advected"],
+            _ => &["group", "generators", "l_d", "l", "velocity", "discretise", "pace", "advected"],
+        };
+        let mut own: Vec<_> = self.table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref())).collect();
+        // The reader sorts keys by the alphabet; the file's order determines the roundings.
+        own.sort_by_key(|(key, _)| key.span().start);
+        for (key, value) in own {
+            if !is_name(key.get_ref()) {
+                let message = format!("`{}` is no name of a parameter: letters, digits and _ make one", key.get_ref());
+                return Err((key.span(), message));
+            }
+            self.parameters.push(Parameter::of(key.get_ref(), value)?);
+        }
+        if self.has_a_pace {
+            self.parameters.push(Parameter { name: ENERGY.to_owned(), kind: "f64".to_owned(), numbers: vec![0.0] });
+        }
+        Ok(())
+    }
+
+    fn declared(self) -> Result<Declared, Wrong> {
+        let lines: Vec<&str> = self.lines.iter().map(|line| line.text.as_str()).collect();
+        let fields: Vec<String> = self.parameters.iter().map(|one| format!("{}: {}", one.name, one.kind)).collect();
+        let (attribute, name) =
+            if self.role == Role::Force { ("force", "Force") } else { ("lagrangian", "Lagrangian") };
+        let whole = format!("#[{attribute}(\n{}\n)]\nstruct {name} {{ {} }}", lines.join("\n"), fields.join(", "));
+        let declaration = Declaration::parse(&whole).map_err(|error| self.mistake(error))?;
+        if self.has_a_pace && Late::<SO3, SeenWithEnergy, WithKinetic, Backend>::of(declaration).is_err() {
+            let at = self.table.get("pace").map_or_else(|| self.span.clone(), Spanned::span);
+            return Err((at, "a pace is that of a motion on `SO3` with three advected vectors at most".to_owned()));
+        }
+        let numbers = self.parameters.into_iter().flat_map(|one| one.numbers).collect();
+        let (increments, has_a_pace, span) = (self.increments, self.has_a_pace, self.span);
+        Ok(Declared { declaration, numbers, has_a_pace, increments, span })
+    }
+
+    /// The first mistake of the text, with its place in the file and in the words of files.
+    fn mistake(&self, error: LateError) -> Wrong {
+        let LateError::Mistakes(mistakes) = error else { return (self.span.clone(), in_files(&error.to_string())) };
+        let Some(first) = mistakes.into_iter().next() else { return (self.span.clone(), KEYS.to_owned()) };
+        (self.place(&first), in_files(&first.message))
+    }
+
+    /// The place of a mistake: that of its column in a text, of the key or the value that it names, or of the value
+    /// that its line is made of.
+    fn place(&self, mistake: &liestep_late::Mistake) -> Range<usize> {
+        let named = mistake.message.split('`').nth(1);
+        let of_key = || Some(self.table.get_key_value(named?)?.0.span());
+        // The first line is that of the attribute, and the last ones have the parameters.
+        let Some(line) = mistake.line.checked_sub(2).and_then(|line| self.lines.get(line)) else {
+            let expression = self.lines.last().filter(|_| mistake.line > 1).map(|line| line.at.clone());
+            return of_key().or(expression).unwrap_or_else(|| self.span.clone());
+        };
+        if line.is_verbatim {
+            return self.within(mistake, line).unwrap_or_else(|| line.at.clone());
+        }
+        let of_advected = || {
+            let DeValue::Table(all) = self.table.get("advected")?.get_ref() else { return None };
+            let has = |value: &&Spanned<DeValue<'_>>| {
+                value.get_ref().as_str().zip(named).is_some_and(|(text, name)| text.contains(name))
+            };
+            all.iter().map(|(_, value)| value).find(has).map(Spanned::span)
+        };
+        of_key().or_else(of_advected).unwrap_or_else(|| line.at.clone())
+    }
+
+    /// The place of a column of the expression.
+    fn within(&self, mistake: &liestep_late::Mistake, line: &Line) -> Option<Range<usize>> {
+        let of_expression: Vec<&Line> = self.lines.iter().filter(|line| line.is_verbatim).collect();
+        let length: usize = of_expression.iter().map(|line| line.text.len() + 1).sum::<usize>() - 1;
+        let first = self.lines.iter().position(|line| line.is_verbatim)?;
+        let own = mistake.line - 2 - first;
+        let before: usize = of_expression[..own].iter().map(|line| line.text.len() + 1).sum();
+        let within: usize = line.text.chars().take(mistake.column.checked_sub(1)?).map(char::len_utf8).sum();
+        // The opening quotation marks are as long as the closing ones.
+        let marks = line.at.len().checked_sub(length)?.div_ceil(2);
+        let start = line.at.start + marks + before + within;
+        (start < line.at.end).then_some(start..line.at.end)
     }
 }
 
-fn read(table: &DeTable<'_>, place: &Range<usize>, role: Role) -> Result<Declared, Wrong> {
-    let ([head, pace], (expression, at)) = expression(table, place, role)?;
-    let advected = advected(table)?;
-    let known: &[&str] = match role {
-        Role::Force => &["group", "work", "advected"],
-        _ => &["group", "l_d", "l", "velocity", "discretise", "pace", "advected"],
-    };
-    let mut parameters: Vec<_> = table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref())).collect();
-    // The reader sorts keys by the alphabet; the file's order determines the roundings.
-    parameters.sort_by_key(|(key, _)| key.span().start);
-    let mut parameters =
-        parameters.into_iter().map(|(key, value)| parameter(key.get_ref(), value)).collect::<Result<Vec<_>, _>>()?;
-    let has_a_pace = !pace.is_empty();
-    if has_a_pace {
-        parameters.push(Parameter { name: ENERGY.to_owned(), kind: "f64", numbers: vec![0.0] });
-    }
-    let fields: Vec<String> = parameters.iter().map(|one| format!("{}: {}", one.name, one.kind)).collect();
-    let (attribute, name) = if role == Role::Force { ("force", "Force") } else { ("lagrangian", "Lagrangian") };
-    let declared = format!(
-        "#[{attribute}(group = SO3, {pace}{advected}{head} =\n{expression}\n)]\nstruct {name} {{ {} }}",
-        fields.join(", ")
-    );
-    let wrong = |error: LateError| {
-        let LateError::Mistakes(mistakes) = error else { return (place.clone(), error.to_string()) };
-        let Some(first) = mistakes.into_iter().next() else { return (place.clone(), KEYS.to_owned()) };
-        let of_key = || first.message.split('`').nth(1).and_then(|name| Some(table.get_key_value(name)?.0.span()));
-        let span = placed(&expression, &at, (first.line, first.column)).or_else(of_key);
-        // A mistake in the first line, before the expression, concerns the table.
-        let elsewhere = if first.line < 2 { place } else { &at };
-        (span.unwrap_or_else(|| elsewhere.clone()), first.message)
-    };
-    let declaration = Declaration::parse(&declared).map_err(wrong)?;
-    let numbers = parameters.into_iter().flat_map(|one| one.numbers).collect();
-    let declared = Declared { declaration, numbers, has_a_pace };
-    let fits = match role {
-        Role::Force => declared.late::<WithoutKinetic>().map(|_| ()),
-        _ if has_a_pace => declared.paced().map(|_| ()),
-        _ => declared.late::<WithKinetic>().map(|_| ()),
-    };
-    fits.map_err(wrong).map(|()| declared)
+/// Whether it is a name in a declaration.
+fn is_name(text: &str) -> bool {
+    let is_letter = |letter: char| letter.is_alphabetic() || letter == '_';
+    text.starts_with(is_letter) && text.chars().all(|letter| is_letter(letter) || letter.is_ascii_digit())
 }
 
-/// The argument `advected(w = up), `, empty without advected vectors.
-fn advected(table: &DeTable<'_>) -> Result<String, Wrong> {
-    let Some(value) = table.get("advected") else { return Ok(String::new()) };
-    let all = BTreeMap::<String, Spanned<String>>::deserialize(ValueDeserializer::from(value.clone()))
-        .map_err(|error| in_value(value, &error))?;
-    let mut all: Vec<_> = all.into_iter().collect();
+/// The names in a list, or in a text with commas.
+fn names(value: &Spanned<DeValue<'_>>, key: &str) -> Result<Vec<String>, Wrong> {
+    let wrong = |span| (span, format!("`{key}` is a name, or a list of names for the factors of a product"));
+    let name = |text: &str, span: Range<usize>| {
+        let text = text.trim();
+        if is_name(text) { Ok(text.to_owned()) } else { Err(wrong(span)) }
+    };
+    match value.get_ref() {
+        DeValue::String(text) => text.split(',').map(|one| name(one, value.span())).collect(),
+        DeValue::Array(list) => {
+            list.iter().map(|one| name(one.get_ref().as_str().unwrap_or_default(), one.span())).collect()
+        }
+        _ => Err(wrong(value.span())),
+    }
+}
+
+/// The group of a table: `= SE3` with its generators, or `(F = SO3, d = R3)`.
+fn placed(group: Option<&Spanned<DeValue<'_>>>, generators: Option<&Spanned<DeValue<'_>>>) -> Result<Place, Wrong> {
+    let name = |value: &Spanned<DeValue<'_>>| match value.get_ref().as_str() {
+        Some(name) if is_name(name) => Ok(name.to_owned()),
+        _ => Err((value.span(), GROUP.to_owned())),
+    };
+    let mut increments = Vec::new();
+    let group = match group.map(|group| (group, group.get_ref())) {
+        None => "= SO3".to_owned(),
+        Some((_, DeValue::Table(factors))) if !factors.is_empty() => {
+            let mut factors: Vec<_> = factors.iter().collect();
+            factors.sort_by_key(|(key, _)| key.span().start);
+            let mut pairs = Vec::new();
+            for (increment, group) in factors {
+                if !is_name(increment.get_ref()) {
+                    return Err((increment.span(), GROUP.to_owned()));
+                }
+                pairs.push(format!("{} = {}", increment.get_ref(), name(group)?));
+                increments.push(increment.get_ref().to_string());
+            }
+            format!("({})", pairs.join(", "))
+        }
+        Some((group, _)) => format!("= {}", name(group)?),
+    };
+    let generators = match generators {
+        None => String::new(),
+        Some(value) => {
+            let list = Vec::<Vec<Vec<Scalar<Number>>>>::deserialize(ValueDeserializer::from(value.clone()))
+                .map_err(|error| in_value(value, &error))?;
+            let row = |row: &Vec<Scalar<Number>>| {
+                format!("[{}]", row.iter().map(|entry| format!("{:?}", entry.value)).collect::<Vec<_>>().join(", "))
+            };
+            let matrix = |rows: &Vec<Vec<_>>| format!("[{}]", rows.iter().map(row).collect::<Vec<_>>().join(", "));
+            format!("generators = [{}],", list.iter().map(matrix).collect::<Vec<_>>().join(", "))
+        }
+    };
+    Ok(Place { group, generators, increments })
+}
+
+/// The argument `advected(w = up, Q = F_2.seen_from(F_1)),`.
+fn advected(value: &Spanned<DeValue<'_>>) -> Result<String, Wrong> {
+    let wrong = |span| (span, "`advected` are texts by names, as `{ w = \"up\" }`".to_owned());
+    let DeValue::Table(all) = value.get_ref() else { return Err(wrong(value.span())) };
+    let mut all: Vec<_> = all.iter().collect();
     all.sort_by_key(|(_, field)| field.span().start);
-    let pairs: Vec<String> = all.into_iter().map(|(name, field)| format!("{name} = {}", field.get_ref())).collect();
-    Ok(format!("advected({}), ", pairs.join(", ")))
-}
-
-/// The place in the file of a line and a column of the declared text, whose second line is the expression's first.
-fn placed(expression: &str, at: &Range<usize>, (line, column): (usize, usize)) -> Option<Range<usize>> {
-    let lines = || expression.split_inclusive('\n');
-    let own = line.checked_sub(2)?;
-    let (before, within): (usize, &str) = (lines().take(own).map(str::len).sum(), lines().nth(own)?);
-    let within: usize = within.chars().take(column.checked_sub(1)?).map(char::len_utf8).sum();
-    // The opening quotation marks are as long as the closing ones.
-    let marks = at.len().checked_sub(expression.len())?.div_ceil(2);
-    let start = at.start + marks + before + within;
-    (start < at.end).then_some(start..at.end)
-}
-
-/// A parameter, with the type that its value suggests.
-fn parameter(name: &str, value: &Spanned<DeValue<'_>>) -> Result<Parameter, Wrong> {
-    let source = || ValueDeserializer::from(value.clone());
-    let wrong = |error: Error| in_value(value, &error);
-    let numbers = |list: Vec<Scalar<Any>>| list.iter().map(|number| number.value).collect::<Vec<f64>>();
-    let (kind, numbers) = match value.get_ref() {
-        DeValue::Table(_) => {
-            let inertia =
-                OfInertia::deserialize(source()).map_err(wrong)?.inertia().map_err(|why| (value.span(), why))?;
-            // A name with the suffix `_d` has the nonstandard inertia.
-            let is_nonstandard = name.ends_with("_d");
-            let matrix = if is_nonstandard { *inertia.to_nonstandard().as_matrix() } else { *inertia.as_matrix() };
-            (if is_nonstandard { "NonstandardInertia" } else { "Inertia" }, matrix.as_slice().to_vec())
-        }
-        DeValue::Array(rows) if matches!(rows.first().map(Spanned::get_ref), Some(DeValue::Array(_))) => {
-            let rows = Vec::<Vec<Scalar<Any>>>::deserialize(source()).map_err(wrong)?;
-            if rows.len() != 3 || rows.iter().any(|row| row.len() != 3) {
-                return Err((value.span(), "a matrix has three rows of three numbers".to_owned()));
-            }
-            ("Matrix3<f64>", rows.into_iter().flat_map(numbers).collect())
-        }
-        DeValue::Array(_) => {
-            let vector = numbers(Vec::<Scalar<Any>>::deserialize(source()).map_err(wrong)?);
-            if vector.len() != 3 {
-                return Err((value.span(), format!("a vector has three numbers, found {}", vector.len())));
-            }
-            ("Vector3<f64>", vector)
-        }
-        _ => ("f64", vec![Scalar::<Any>::deserialize(source()).map_err(wrong)?.value]),
+    let pair = |(name, field): (&Spanned<_>, &Spanned<DeValue<'_>>)| {
+        let text = field.get_ref().as_str().ok_or_else(|| wrong(field.span()))?;
+        Ok(format!("{} = {text}", name.get_ref()))
     };
-    Ok(Parameter { name: name.to_owned(), kind, numbers })
-}
-
-fn in_value(value: &Spanned<DeValue<'_>>, error: &Error) -> Wrong {
-    (error.span().unwrap_or_else(|| value.span()), advised(error.message()))
-}
-
-/// An inertia by its principal moments, or by its tensor.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct OfInertia {
-    moments: Option<Moments>,
-    tensor: Option<Full>,
-}
-
-impl OfInertia {
-    fn inertia(self) -> Result<Inertia, String> {
-        match (self.moments, self.tensor) {
-            (Some(moments), None) => Ok(moments.J),
-            (None, Some(tensor)) => Ok(tensor.0),
-            _ => Err("an inertia is `{ moments = [x, y, z] }`, or `{ tensor = [[…], […], […]] }`".to_owned()),
-        }
-    }
+    let pairs = all.into_iter().map(pair).collect::<Result<Vec<_>, Wrong>>()?;
+    Ok(if pairs.is_empty() { String::new() } else { format!("advected({}),", pairs.join(", ")) })
 }

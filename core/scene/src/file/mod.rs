@@ -1,5 +1,6 @@
 //! Scene files: the tables of a document as types, and the mistakes in them with their places.
 
+pub(crate) mod beginning;
 pub(crate) mod body;
 pub(crate) mod column;
 pub(crate) mod document;
@@ -7,11 +8,13 @@ pub(crate) mod draws;
 pub(crate) mod effects;
 pub(crate) mod ensemble;
 pub(crate) mod event;
+pub(crate) mod group;
 pub(crate) mod key;
 pub(crate) mod lagrangian;
 pub(crate) mod method;
 pub(crate) mod mistake;
 pub(crate) mod orbit;
+pub(crate) mod parameter;
 pub(crate) mod picture;
 pub(crate) mod quantity;
 pub(crate) mod read;
@@ -23,3 +26,4 @@ pub(crate) mod sweep;
 pub(crate) mod system;
 pub(crate) mod tables;
 pub(crate) mod text;
+pub(crate) mod words;

@@ -17,6 +17,13 @@ pub(crate) struct SpherePicture {
     pub(crate) panels: Vec<Curve>,
 }
 
+impl SpherePicture {
+    /// The panels of a group other than SO(3), which has no sphere.
+    pub(crate) fn on_group() -> Self {
+        Self { panels: vec![Curve::Attitude, Curve::Rates, Curve::Energy], ..Self::default() }
+    }
+}
+
 /// The point whose path is drawn on the sphere.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -33,7 +40,9 @@ pub(crate) enum Trace {
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Curve {
-    /// The angular velocity, body frame.
+    /// The columns of the attitude.
+    Attitude,
+    /// The angular velocity, body frame; on any group the velocity.
     Rates,
     /// The angle between the axis and the third axis of space.
     Tilt,

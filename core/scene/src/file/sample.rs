@@ -1,5 +1,7 @@
 //! The state of a scene at one time.
 
+use std::sync::Arc;
+
 use liestep::SO3;
 use liestep::groups::LieGroup as _;
 use nalgebra::{Matrix3, Vector3};
@@ -10,8 +12,13 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Sample {
     /// Time since the start, s.
     pub time: f64,
-    /// States of the bodies, in the order of the file.
+    /// States of the bodies, in the order of the file; none on another group than SO(3).
     pub bodies: Vec<BodySample>,
+    /// Numbers of a scene on one group, empty for several bodies: the attitude's columns as a recorder has them, the
+    /// components of velocity, momentum and momentum in space, the energy, and the distance from the group.
+    pub numbers: Vec<f64>,
+    /// The places of quaternions among the numbers.
+    pub(crate) quaternions: Arc<[usize]>,
     /// Energy of the continuous limit, J.
     pub energy: f64,
     /// Total momentum in space, kg m/s; zero for a body that turns about a fixed point.
@@ -47,6 +54,14 @@ impl Sample {
         for (body, before) in self.bodies.iter_mut().zip(&before.bodies) {
             body.quaternion = before.quaternion;
             body.attitude.write_numbers(&mut body.quaternion);
+        }
+        for &place in self.quaternions.iter() {
+            let (now, before) = (&mut self.numbers[place..place + 4], &before.numbers[place..place + 4]);
+            if now.iter().zip(before).map(|(now, before)| now * before).sum::<f64>() < 0.0 {
+                for part in now {
+                    *part = -*part;
+                }
+            }
         }
     }
 }

@@ -3,21 +3,26 @@
 use std::path::PathBuf;
 
 use liestep::recording;
+use liestep_late::Declaration;
 use nalgebra::Matrix3;
 use serde::Deserialize;
-use toml::de::{Error, ValueDeserializer};
+use toml::Spanned;
+use toml::de::{DeValue, Error, ValueDeserializer};
 
+use crate::file::beginning::Beginning;
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
 use crate::file::draws::SceneEnsemble;
 use crate::file::effects::{self, EFFECTS, Listed, Table, effects};
 use crate::file::event::Event;
+use crate::file::group::Group;
 use crate::file::lagrangian::{Declared, taken};
+use crate::file::mistake::Wrong;
 use crate::file::orbit::{Orbit, put};
+use crate::file::parameter::in_value;
 use crate::file::picture::SpherePicture;
 use crate::file::quantity::{Rate, in_si, round, short};
 use crate::file::schedule::{Pace, Schedule};
-use crate::file::start::Start;
 use crate::file::text::title;
 
 /// Defines the type, with a field and a row of its documentation for each effect.
@@ -50,7 +55,7 @@ macro_rules! scene_file {
             /// of the start.
             pub(crate) fn put(&mut self, [name, key]: [&str; 2], component: usize, number: f64, unit: &str) -> bool {
                 match name {
-                    "start" if key == "velocity" => {
+                    "start" if key == "velocity" && self.group.is_rotation() && !self.start.is_by_momentum => {
                         put(self.start.velocity.get_mut(component), in_si::<Rate>(number, unit))
                     }
                     $(stringify!($name) => {
@@ -61,11 +66,13 @@ macro_rules! scene_file {
             }
 
             /// Replaces the body, the start or an effect by one read from a table; other names are ignored.
-            pub(crate) fn set(&mut self, name: &str, table: ValueDeserializer<'_>) -> Result<(), Error> {
+            pub(crate) fn set(&mut self, name: &str, value: &Spanned<DeValue<'_>>) -> Result<(), Wrong> {
+                let table = || ValueDeserializer::from(value.clone());
+                let wrong = |error: Error| in_value(value, &error);
                 match name {
-                    "body" => self.body = Some(Body::deserialize(table)?),
-                    "start" => self.start = Start::deserialize(table)?,
-                    $(stringify!($name) => self.$name = Some(effects::$table::deserialize(table)?),)+
+                    "body" => self.body = Some(Body::deserialize(table()).map_err(wrong)?),
+                    "start" => self.start = Beginning::read(value, &self.group)?,
+                    $(stringify!($name) => self.$name = Some(effects::$table::deserialize(table()).map_err(wrong)?),)+
                     _ => {}
                 }
                 Ok(())
@@ -77,9 +84,9 @@ macro_rules! scene_file {
 effects! { scene_file
     #[serde(deserialize_with = "title")]
     pub(crate) title: String,
-    /// A body of the library; none with a Lagrangian, which replaces it and the effects.
+    /// A body of the library; none with a Lagrangian that has the kinetic energy.
     pub(crate) body: Option<Body>,
-    pub(crate) start: Start,
+    pub(crate) start: Beginning,
     pub(crate) run: Schedule,
     #[serde(default)]
     pub(crate) picture: SpherePicture,
@@ -88,9 +95,15 @@ effects! { scene_file
     #[serde(default)]
     pub(crate) output: Output,
     #[serde(default, deserialize_with = "taken")]
-    pub(crate) lagrangian: Option<Declared>,
+    pub(crate) lagrangian: Vec<Declared>,
     #[serde(default, deserialize_with = "taken")]
-    pub(crate) force: Option<Declared>,
+    pub(crate) force: Vec<Declared>,
+    /// The group of the scene.
+    #[serde(skip)]
+    pub(crate) group: Group,
+    /// The sum of all terms where the file has the kinetic energy itself.
+    #[serde(skip)]
+    pub(crate) sum: Option<&'static Declaration>,
     #[serde(skip)]
     pub(crate) columns: Vec<Column>,
     /// The sweep of the file; none in the scenes that a sweep generates.
@@ -115,6 +128,7 @@ pub(crate) struct Origin {
 pub(crate) struct Places {
     pub(crate) body: (usize, usize),
     pub(crate) start: (usize, usize),
+    pub(crate) attitude: (usize, usize),
     /// Place of the step or the accuracy.
     pub(crate) pace: (usize, usize),
     pub(crate) method: (usize, usize),
@@ -165,7 +179,12 @@ impl SceneFile {
     /// Whether the steps have different lengths.
     pub(crate) fn has_steps_of_its_own(&self) -> bool {
         let is_varied = self.run.steps_per_orbit.is_some() || self.run.density.is_some();
-        is_varied || self.lagrangian.as_ref().is_some_and(|own| own.has_a_pace)
+        is_varied || self.paced().is_some()
+    }
+
+    /// The Lagrangian with a pace.
+    pub(crate) fn paced(&self) -> Option<&Declared> {
+        self.lagrangian.iter().find(|own| own.has_a_pace)
     }
 
     /// The number of steps; none where they are chosen for an accuracy.
@@ -180,7 +199,9 @@ impl SceneFile {
     /// The angle by which the body turns in an equal step at the start, approximately, rad.
     pub(crate) fn turn_of_a_step(&self) -> Option<f64> {
         match self.run.pace {
-            Pace::Step { step, .. } if !self.has_steps_of_its_own() => Some(step * self.start.velocity.norm()),
+            Pace::Step { step, .. } if !self.has_steps_of_its_own() && self.group.is_rotation() => {
+                Some(step * self.start.rate()?.norm())
+            }
             _ => None,
         }
     }
@@ -203,16 +224,17 @@ impl SceneFile {
 
     /// A description of the terms, in words.
     pub(crate) fn sum(&self) -> String {
-        let first = if self.lagrangian.is_some() { "a Lagrangian of its own" } else { "body" };
+        let body = self.body.iter().map(|_| "body".to_owned());
+        let own = self.lagrangian.iter().map(|_| "a Lagrangian of its own".to_owned());
         let effects = self.effects().map(|(effect, _)| effect.name(" "));
-        let force = self.force.as_ref().map(|_| "a force of its own".to_owned());
-        effects.chain(force).fold(first.to_owned(), |sum, effect| format!("{sum} + {effect}"))
+        let force = self.force.iter().map(|_| "a force of its own".to_owned());
+        body.chain(own).chain(effects).chain(force).collect::<Vec<_>>().join(" + ")
     }
 
     /// The name of the first force.
     pub(crate) fn first_force(&self) -> Option<String> {
         let listed = self.effects().find(|(effect, _)| effect.does_work()).map(|(effect, _)| effect.name(" "));
-        listed.or_else(|| self.force.as_ref().map(|_| "`force`".to_owned()))
+        listed.or_else(|| self.force.first().map(|_| "`force`".to_owned()))
     }
 
     /// The effects that vary along an orbit: the keys that lead to their orbits, and the orbits.
@@ -226,15 +248,22 @@ impl SceneFile {
         self.body.map(|body| body.kinetic).unwrap_or_default()
     }
 
+    /// Whether it has a body of the library with a compiled step, that of (3.13).
+    pub(crate) fn has_compiled_body(&self) -> bool {
+        self.body.is_some_and(|body| body.kinetic == Kinetic::Rigid)
+    }
+
     /// The inertia at the identity attitude; none for a Lagrangian that isn't of a body.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
-        let of_lagrangian = || self.lagrangian.as_ref().and_then(Declared::inertia);
+        let own = self.lagrangian.iter().filter(|own| own.declaration.has_kinetic && self.group.is_rotation());
+        let of_lagrangian = || own.filter_map(Declared::inertia).reduce(|sum, own| sum + own);
         self.body.map(|body| *body.J.as_matrix()).or_else(of_lagrangian)
     }
 
     /// Order of the scene's own step; effects are kicks of second order.
     pub(crate) fn order(&self) -> u32 {
-        if self.effects().next().is_none() && self.force.is_none() { self.kinetic().order() } else { 2 }
+        let is_free = self.effects().next().is_none() && self.lagrangian.is_empty() && self.force.is_empty();
+        if is_free { self.kinetic().order() } else { 2 }
     }
 }
 

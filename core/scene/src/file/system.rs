@@ -257,7 +257,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         return Err((0..0, "a system has a body at least".to_owned()));
     }
     let called: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
-    let columns = table.output.columns(&Column::OF_SEVERAL_BODIES, &["position", "quaternion", "energy", "gap"])?;
+    let columns = table.output.columns(&Column::of_several_bodies(), &["position", "quaternion", "energy", "gap"])?;
     if let Some((body, name)) = name_twice(&columns, &called) {
         let message = format!("two columns of the table would be called `{name}`: give the body another name");
         return Err((names[body].clone(), message));

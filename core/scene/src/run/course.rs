@@ -1,11 +1,14 @@
 //! Samples, steps and event functions for the run of one body.
 
-use liestep::mechanics::Effect;
-use liestep::motion::{AnyMotion, AnyState, AnyStepper, Integrator, Moment, Plan};
-use liestep::{SO3, Stepper, recording};
+use std::sync::Arc;
+
+use liestep::groups::LieGroup as _;
+use liestep::motion::{AnyMotion, AnyState, AnyStepper, Integrator, Moment};
+use liestep::{SO3, recording};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::file::event::{Direction, Event, Quantity};
+use crate::file::group::Group;
 use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
 use crate::run::make::{Course, EventFunction};
@@ -13,7 +16,7 @@ use crate::run::make::{Course, EventFunction};
 /// The stepper of a scene, and its initial state.
 pub type MemberStart = (AnyStepper, AnyState);
 
-/// An integrator of a body on SO(3): a typed stepper in lanes, or one whose states are numbers.
+/// An integrator of a body on SO(3).
 pub trait Rotating: Integrator<Scalar = f64> {
     /// The attitude, body to space.
     fn attitude(motion: &Self::Motion) -> SO3;
@@ -23,6 +26,9 @@ pub trait Rotating: Integrator<Scalar = f64> {
 
     /// The angular velocity, body frame, rad/s.
     fn rate(velocity: Self::Velocity) -> Vector3<f64>;
+
+    /// The components of the momentum in space, on any group.
+    fn in_space(now: &Moment<'_, Self>) -> Vec<f64>;
 }
 
 impl Rotating for AnyStepper {
@@ -37,37 +43,31 @@ impl Rotating for AnyStepper {
     fn rate(velocity: Vec<f64>) -> Vector3<f64> {
         Vector3::from_column_slice(&velocity)
     }
-}
 
-impl<S, P> Rotating for Stepper<S, P>
-where
-    S: Effect<Scalar = f64, Group = SO3>,
-    P: Plan<S>,
-{
-    fn attitude(motion: &Self::Motion) -> SO3 {
-        motion.attitude()
-    }
-
-    fn momentum(motion: &Self::Motion) -> Vector3<f64> {
-        motion.momentum()
-    }
-
-    fn rate(velocity: Vector3<f64>) -> Vector3<f64> {
-        velocity
+    fn in_space(now: &Moment<'_, Self>) -> Vec<f64> {
+        now.integrator().spatial_momentum(now)
     }
 }
 
-/// The sample of one body at this moment.
-pub(crate) fn sample<I: Rotating>(now: &Moment<'_, I>) -> Sample {
-    let body = BodySample::turning(I::attitude(now), I::rate(now.velocity()), I::momentum(now));
-    Sample {
-        time: now.time(),
-        energy: now.energy(),
-        momentum: nalgebra::zero(),
-        angular_momentum: body.matrix() * body.momentum,
-        gap: 0.0,
-        bodies: vec![body],
+/// The sample of a scene on this group at this moment.
+pub(crate) fn sample<I: Rotating>(group: &Group, now: &Moment<'_, I>) -> Sample {
+    let (time, energy, gap, momentum) = (now.time(), now.energy(), 0.0, nalgebra::zero());
+    let quaternions = Arc::clone(&group.quaternions);
+    if group.is_rotation() {
+        let body = BodySample::turning(I::attitude(now), I::rate(now.velocity()), I::momentum(now));
+        let angular_momentum = body.matrix() * body.momentum;
+        let vectors = [body.velocity, body.momentum, angular_momentum];
+        let vectors = vectors.iter().flat_map(Vector3::as_slice);
+        let ends = [energy, body.attitude.defect()];
+        let numbers = body.quaternion.iter().chain(vectors).chain(&ends).copied().collect();
+        return Sample { time, energy, momentum, angular_momentum, gap, bodies: vec![body], numbers, quaternions };
     }
+    let integrator = now.integrator();
+    let (mut attitude, in_space) = (vec![0.0; group.attitude().len()], group.in_space());
+    let mut numbers = vec![0.0; in_space.start + 2];
+    integrator.write(now, &integrator.inertia(), &mut attitude, &mut numbers);
+    numbers.splice(in_space.start..in_space.start, I::in_space(now));
+    Sample { time, energy, momentum, angular_momentum: momentum, gap, bodies: Vec::new(), numbers, quaternions }
 }
 
 /// The length and the table of a run with this many steps.
@@ -83,10 +83,9 @@ pub(crate) fn course(file: &SceneFile, steps: u64) -> Course<'_> {
 
 /// The events that a run detects.
 pub(crate) fn watches(file: &SceneFile) -> Vec<(recording::Event, EventFunction<AnyStepper>)> {
-    let axis = file.picture.axis.0;
     let watch = |event: &Event| -> (_, EventFunction<_>) {
         let kind = kind(event.direction);
-        (if event.stops { kind.terminal() } else { kind }, Box::new(function(event.quantity, axis)))
+        (if event.stops { kind.terminal() } else { kind }, Box::new(function(event.quantity, file)))
     };
     file.event.iter().map(watch).collect()
 }
@@ -98,9 +97,8 @@ pub type MemberEvent<I> = (String, recording::Event, Box<dyn Fn(&Moment<'_, I>) 
 impl SceneFile {
     /// The events to be detected for the members of an ensemble.
     pub fn member_events<I: Rotating>(&self) -> impl Iterator<Item = MemberEvent<I>> {
-        let axis = self.picture.axis.0;
-        let of = move |Event { name, quantity, direction, stops }: &Event| -> MemberEvent<I> {
-            (name.clone(), kind(*direction), Box::new(function(*quantity, axis)), *stops)
+        let of = move |Event { name, quantity, direction, stops, .. }: &Event| -> MemberEvent<I> {
+            (name.clone(), kind(*direction), Box::new(function(*quantity, self)), *stops)
         };
         self.event.iter().map(of)
     }
@@ -115,12 +113,15 @@ fn kind(direction: Direction) -> recording::Event {
     }
 }
 
-/// The function that rises through zero with the quantity through its value. A tilt is that of `axis`, body frame.
+/// The function that rises through zero with the quantity through its value. A tilt is that of the picture's axis, body
+/// frame.
 fn function<I: Rotating>(
     quantity: Quantity,
-    axis: Vector3<f64>,
-) -> impl Fn(&Moment<'_, I>) -> f64 + Send + Sync + 'static {
+    file: &SceneFile,
+) -> impl Fn(&Moment<'_, I>) -> f64 + Send + Sync + use<I> + 'static {
+    let (axis, group) = (file.picture.axis.0, file.group.clone());
     move |now| match quantity {
+        Quantity::Column(place, value) => sample(&group, now).numbers[place] - value,
         // The cosine is smooth at the vertical, unlike the angle.
         Quantity::Tilt(angle) => angle.cos() - (I::attitude(now).as_matrix() * axis).z,
         Quantity::Speed(speed) => I::rate(now.velocity()).norm_squared() - speed * speed,

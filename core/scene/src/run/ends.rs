@@ -8,7 +8,7 @@ impl SceneFile {
     /// The names of the numbers of [`end`](Self::end).
     #[must_use]
     pub fn end_names(&self) -> Vec<String> {
-        let columns = self.columns().iter().flat_map(|column| column.names()).copied();
+        let columns = self.columns().iter().flat_map(Column::names);
         let columns = std::iter::once("t")
             .chain(columns)
             .chain(["greatest_energy_error", "greatest_momentum_error"])
@@ -25,9 +25,13 @@ impl SceneFile {
     #[must_use]
     pub fn end(&self, run: &Run) -> Vec<f64> {
         let (Some(first), Some(last)) = (run.samples().first(), run.samples().last()) else { return Vec::new() };
+        let of_errors: Vec<Column> = Column::of_group(&self.group)
+            .into_iter()
+            .filter(|column| ["energy-error", "momentum-error"].contains(&column.key()))
+            .collect();
         let mut greatest = [0.0_f64; 2];
         for sample in run.samples() {
-            let errors = Column::row(&[Column::ENERGY_ERROR, Column::MOMENTUM_ERROR], first, sample);
+            let errors = Column::row(&of_errors, first, sample);
             for (greatest, value) in greatest.iter_mut().zip(errors) {
                 // `max` would ignore a NaN.
                 *greatest = if greatest.is_nan() || value.is_nan() { f64::NAN } else { greatest.max(value.abs()) };

@@ -280,10 +280,17 @@ impl Run {
     }
 
     /// Title, terms, steps and the energy at both ends, followed by the text of `rest`.
-    pub(crate) fn summary(&self, title: &str, sum: &str, rest: impl FnOnce(&Sample, &Sample) -> String) -> String {
+    pub(crate) fn summary(
+        &self,
+        title: &str,
+        sum: &str,
+        unit: &str,
+        rest: impl FnOnce(&Sample, &Sample) -> String,
+    ) -> String {
         let (Some(first), Some(last)) = (self.samples.first(), self.samples.last()) else { return String::new() };
         let (Self { steps, average, .. }, step, rest) = (self, short(self.step), rest(first, last));
         let [before, after] = [first.energy, last.energy].map(short);
-        format!("{title}\n  {sum}, {steps} steps of {step} s{average}\n  energy {before} J → {after} J{rest}\n")
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        format!("{title}\n  {sum}, {steps} steps of {step} s{average}\n  energy {before}{unit} → {after}{unit}{rest}\n")
     }
 }

@@ -2,21 +2,20 @@
 
 use std::error::Error;
 
-use liestep::groups::Advected;
 use liestep::motion::Moment;
 use liestep::recording::{self, Csv, Sink};
 use liestep::with::Scheme;
-use liestep::{SO3, SetupError, StepError};
-use liestep_late::Slots;
+use liestep::{SetupError, StepError};
 
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
 use crate::file::event::Event;
 use crate::file::mistake::Mistake;
 use crate::file::quantity::short;
+use crate::file::sample::Sample;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
-use crate::run::choose::{self, MemberInLanes, Whole};
+use crate::run::choose::{self, Whole};
 use crate::run::course::{MemberStart, Rotating, sample};
 use crate::run::make::{Listeners, Run, Stop, fast_turn};
 
@@ -91,28 +90,27 @@ impl SceneFile {
         choose::stepper(self).map_err(|stop| self.mistake(stop))
     }
 
-    /// The scene as one program, for members of its ensemble in lanes. `None` for another method, for varying steps,
-    /// for effects along orbits, and for terms that need another `W`: try [`LeastWhole`](crate::LeastWhole)
-    /// first.
+    /// The scene's step as data, for members of its ensemble in lanes. `None` for another method, for varying steps, and for
+    /// effects along orbits.
     #[must_use]
-    pub fn whole<W: Advected<SO3> + Slots>(&self) -> Option<Whole<W>> {
+    pub fn whole(&self) -> Option<Whole> {
         choose::whole(self)
     }
 
-    /// The stepper and the initial state for lanes, from the program of a file that differs from this one in numbers
+    /// The stepper and the initial state for lanes, from the step of a file that differs from this one in numbers
     /// alone.
     ///
     /// # Errors
     ///
     /// The errors of [`stepper`](Self::stepper).
-    pub fn in_lanes<W: Advected<SO3> + Slots>(&self, whole: &Whole<W>) -> Result<MemberInLanes<W>, Mistake> {
+    pub fn in_lanes(&self, whole: &Whole) -> Result<MemberStart, Mistake> {
         choose::member(self, whole).map_err(|stop| self.mistake(stop))
     }
 
     /// The numbers of these columns at a moment, one after the other. The sign of a quaternion is arbitrary.
     #[must_use]
-    pub fn numbers<I: Rotating>(columns: &[Column], now: &Moment<'_, I>) -> Vec<f64> {
-        let now = sample(now);
+    pub fn numbers<I: Rotating>(&self, columns: &[Column], now: &Moment<'_, I>) -> Vec<f64> {
+        let now = sample(&self.group, now);
         Column::row(columns, &now, &now)
     }
 
@@ -126,9 +124,10 @@ impl SceneFile {
                 if self.body.is_some() && self.kinetic() == Kinetic::Rigid {
                     message.push_str(", or `kinetic = \"geodesic\"` of the body, which may turn further");
                 }
-                let fastest = short(self.start.velocity.amax());
+                let rate = self.start.rate().filter(|_| self.group.is_rotation()).unwrap_or_default().amax();
+                let fastest = short(rate);
                 // A number like 180 suggests degrees.
-                if self.start.velocity.amax() >= 20.0 && fastest.len() < 5 {
+                if rate >= 20.0 && fastest.len() < 5 {
                     let hint = format!("; numbers alone are in rad/s: were degrees meant, write \"{fastest} deg/s\"");
                     message.push_str(&hint);
                 }
@@ -152,6 +151,7 @@ impl SceneFile {
             ) => places.method,
             Stop::Setup(_) => places.body,
             Stop::Spring(..) => places.spring,
+            Stop::Start(SetupError::NotInGroup { .. }) => places.attitude,
             Stop::Start(_) => places.start,
         };
         Mistake::of_run(path, place, message)
@@ -203,9 +203,11 @@ impl SceneFile {
             format!("\n  {}: {often}{when}{ending}", event.name)
         };
         let events: String = self.event.iter().enumerate().map(line).collect();
-        let ends = run.summary(&self.title, &self.sum(), |first, last| {
-            let [before, after] = [first, last].map(|sample| short(sample.angular_momentum.norm()));
-            format!(", momentum {before} → {after} kg m²/s{events}")
+        let unit = if self.group.is_rotation() { " kg m²/s" } else { "" };
+        let norm = |sample: &Sample| sample.numbers[self.group.in_space()].iter().map(|part| part * part).sum::<f64>();
+        let ends = run.summary(&self.title, &self.sum(), self.group.unit_of_energy(), |first, last| {
+            let [before, after] = [first, last].map(|sample| short(norm(sample).sqrt()));
+            format!(", momentum {before} → {after}{unit}{events}")
         });
         let choice = run.choice.as_ref().map(|choice| {
             let (error, accuracy, method) = (choice.error, choice.accuracy.tolerance, choice.chosen().scheme);

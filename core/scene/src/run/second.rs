@@ -1,5 +1,7 @@
 //! Error of a run's end, estimated by a second run with other steps (Richardson).
 
+use std::ops::Range;
+
 use liestep::with::Scheme;
 use nalgebra::Vector3;
 
@@ -16,11 +18,16 @@ const ANOTHER: f64 = 1.0;
 /// Difference of velocities, relative to the largest, beyond which two runs are different motions.
 const SHARE: f64 = 0.5;
 
-/// Differences of two states, the largest among all bodies: rad, rad/s, m and m/s.
+/// Differences of two states, the largest among all bodies: rad, rad/s, m and m/s; on a group other than SO(3) those of
+/// the attitude's columns and of the velocity, in the places of the second pair.
 struct Apart([f64; 4]);
 
 impl Apart {
-    fn of(one: &Sample, other: &Sample) -> Self {
+    fn of(one: &Sample, other: &Sample, parts: Option<&Parts>) -> Self {
+        if let Some(parts) = parts {
+            let [attitude, velocity] = parts.clone().map(|part| distance(one, other, part));
+            return Self([0.0, 0.0, attitude, velocity]);
+        }
         let mut most = [0.0_f64; 4];
         for (one, other) in one.bodies.iter().zip(&other.bodies) {
             // |R − R'| = √8 sin(θ/2)
@@ -37,10 +44,26 @@ impl Apart {
     }
 }
 
+/// The places of attitude and velocity among the numbers of a sample.
+type Parts = [Range<usize>; 2];
+
+/// The norm of the difference of some numbers of two samples.
+fn distance(one: &Sample, other: &Sample, part: Range<usize>) -> f64 {
+    let pairs = one.numbers[part.clone()].iter().zip(&other.numbers[part]);
+    pairs.map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt()
+}
+
 /// The largest angular and linear velocities, rad/s and m/s, and the largest distance of a body from its start, m.
-fn largest(run: &Run) -> [f64; 3] {
+fn largest(run: &Run, parts: Option<&Parts>) -> [f64; 3] {
     let Some(first) = run.samples().first() else { return [0.0; 3] };
     let mut most = [0.0_f64; 3];
+    if let Some([attitude, velocity]) = parts {
+        for sample in run.samples() {
+            let speed = sample.numbers[velocity.clone()].iter().map(|part| part * part).sum::<f64>().sqrt();
+            most = [0.0, most[1].max(speed), most[2].max(distance(sample, first, attitude.clone()))];
+        }
+        return most;
+    }
     for body in run.samples().iter().flat_map(|sample| sample.bodies.iter().zip(&first.bodies)) {
         let (now, start) = body;
         let size = |of: &Vector3<f64>| of.norm();
@@ -51,7 +74,8 @@ fn largest(run: &Run) -> [f64; 3] {
 }
 
 /// The line about the end of a run; `order` is that of its method. `again` simulates a number of steps of a length, s.
-fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) -> Option<String> {
+/// A scene on a group other than SO(3) has `parts`.
+fn line(run: &Run, order: u32, parts: Option<&Parts>, again: impl Fn(u32, f64) -> Result<Run, Stop>) -> Option<String> {
     let steps = u32::try_from(run.steps()).ok().filter(|steps| *steps > 0)?;
     // The second run has half as many steps; twice as many if that isn't a whole number, or if longer steps fail.
     let longer = (steps % 2 == 0).then(|| again(steps / 2, 2.0 * run.step()).ok()).flatten();
@@ -61,12 +85,13 @@ fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) ->
     };
     let share = f64::from(2_u32.saturating_pow(order));
     let factor = if is_longer { 1.0 / (share - 1.0) } else { share / (share - 1.0) };
-    let [turning, moving, way] = largest(run);
+    let [turning, moving, way] = largest(run, parts);
     // Slower motions are rounding errors.
     let floor = 1e-6 / (f64::from(steps) * run.step());
     let limits = [ANOTHER, SHARE * turning.max(floor), SHARE * way.max(1e-6), SHARE * moving.max(floor)];
     let another = |Apart(apart): &Apart| {
-        let names = ["attitude", "angular velocity", "position", "velocity"].into_iter();
+        let place = if parts.is_some() { "attitude" } else { "position" };
+        let names = ["attitude", "angular velocity", place, "velocity"].into_iter();
         names.zip(apart.iter().zip(&limits)).find_map(|(name, (apart, limit))| (apart > limit).then_some(name))
     };
     let mut seconds = second.samples().iter().peekable();
@@ -75,7 +100,7 @@ fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) ->
         let early = |other: &&&Sample| other.time < sample.time - 0.25 * run.step();
         while seconds.next_if(|other| early(&other)).is_some() {}
         let Some(other) = seconds.peek().filter(|other| other.time < sample.time + 0.25 * run.step()) else { continue };
-        let apart = Apart::of(sample, other);
+        let apart = Apart::of(sample, other, parts);
         if let Some(name) = another(&apart) {
             return Some(format!(
                 "  the end isn't determined: by steps of {} s the {name} is another from t = {} s on\n",
@@ -86,14 +111,20 @@ fn line(run: &Run, order: u32, again: impl Fn(u32, f64) -> Result<Run, Stop>) ->
         end = Some(apart);
     }
     let [turn, rate, place, speed] = end?.0.map(|apart| apart * factor);
+    let second = round(second.step());
+    if parts.is_some() {
+        return Some(format!(
+            "  the end is off by about {place:.0e} in the attitude and {speed:.0e} in the velocity, as steps of {second} s \
+             show\n"
+        ));
+    }
     let shifted = if run.samples().first()?.bodies.len() > 1 || place + speed > 0.0 {
         format!(", {place:.0e} m and {speed:.0e} m/s")
     } else {
         String::new()
     };
     Some(format!(
-        "  the end is off by about {turn:.0e} rad and {rate:.0e} rad/s{shifted}, as steps of {} s show\n",
-        round(second.step())
+        "  the end is off by about {turn:.0e} rad and {rate:.0e} rad/s{shifted}, as steps of {second} s show\n"
     ))
 }
 
@@ -115,7 +146,8 @@ impl SceneFile {
             second.event.clear();
             choose::run(&second, Listeners { progress: &mut |_| (), table: None })
         };
-        line(run, order, again).unwrap_or_default()
+        let parts = (!self.group.is_rotation()).then(|| [self.group.attitude(), self.group.velocity()]);
+        line(run, order, parts.as_ref(), again).unwrap_or_default()
     }
 }
 
@@ -127,6 +159,6 @@ impl System {
             let second = Self { step, steps, ..self.clone() };
             second.simulate(u64::from(steps), Listeners { progress: &mut |_| (), table: None })
         };
-        line(run, 2, again).unwrap_or_default()
+        line(run, 2, None, again).unwrap_or_default()
     }
 }

@@ -93,7 +93,7 @@ impl SceneFile {
     fn check_spring(&self, J: &Inertia) -> Result<Option<String>, Stop> {
         let Some(spring) = self.spring else { return Ok(None) };
         let (k, length, arm) = (spring.k.value, spring.length.value, spring.at.value);
-        let anchor = self.start.attitude.inverse_transform_vector(&spring.anchor.value);
+        let anchor = self.start.rotation().as_matrix().tr_mul(&spring.anchor.value);
         let along = arm - anchor;
         let apart = along.norm();
         if has_no_direction(apart, length) {
@@ -124,7 +124,9 @@ impl SceneFile {
     /// is the energy of the spring at the start, J.
     fn farthest_across(&self, J: &Inertia, stretched: f64) -> f64 {
         let Some(spring) = self.spring else { return 0.0 };
-        let velocity = self.start.velocity;
+        let moving = || Vector3::from_column_slice(&self.start.velocity);
+        let of_momentum = || J.as_matrix().try_inverse().map(|inverse| inverse * moving());
+        let velocity = self.start.rate().or_else(of_momentum).unwrap_or_default();
         let weight = self.gravity.map_or(0.0, |field| field.m.value * field.g.value.abs() * field.rho.value.norm());
         let energy = 0.5 * velocity.dot(&(J.as_matrix() * velocity)) + stretched + 2.0 * weight;
         let (arm, anchor) = (spring.at.value.norm(), spring.anchor.value.norm());

@@ -31,7 +31,8 @@ fn sample(stepper: &MultibodyStepper, now: &Moment<'_, AnyStepper>) -> Sample {
     };
     let bodies = (0..stepper.bodies()).map(body).collect();
     let (energy, gap) = (now.energy(), stepper.widest_gap(now.numbers()));
-    Sample { time: now.time(), bodies, energy, momentum, angular_momentum, gap }
+    let (numbers, quaternions) = (Vec::new(), [].into());
+    Sample { time: now.time(), bodies, numbers, quaternions, energy, momentum, angular_momentum, gap }
 }
 
 impl System {
@@ -115,7 +116,7 @@ impl System {
     /// Lines about the start and the end of a run.
     #[must_use]
     pub fn summary(&self, run: &Run) -> String {
-        let ends = run.summary(&self.title, &self.sum(), |_, _| {
+        let ends = run.summary(&self.title, &self.sum(), "J", |_, _| {
             if self.joints.is_empty() {
                 return String::new();
             }

@@ -89,7 +89,10 @@ function corners() {
 }
 const FACES = corners();
 
+// Other groups than that of a body have charts alone.
+document.getElementById("view").hidden = attitudes.length === 0;
 const view = canvasIn(document.getElementById("view"), (pen, width, height) => {
+  if (attitudes.length === 0) return;
   const [sa, ca, se, ce] = [Math.sin(camera.azimuth), Math.cos(camera.azimuth), Math.sin(camera.elevation), Math.cos(camera.elevation)];
   const right = [-sa, ca, 0], up = [-se * ca, -se * sa, ce], towards = [ce * ca, ce * sa, se];
   const size = 0.36 * Math.min(width, height) * camera.zoom, centre = [width / 2, height / 2];
@@ -199,7 +202,7 @@ const charts = motion.charts.map(chart => {
     const margin = chart.logarithmic ? 0.15 : 0.06 * (high - low) || 0.5 * Math.abs(high) || 1; low -= margin; high += margin;
     const LEFT = left(), wide = width - LEFT - RIGHT;
     // The values now stand beside the title, or below it where there is no room.
-    const frame = frameAt(now), title = `${chart.title}, ${chart.unit}`;
+    const frame = frameAt(now), title = chart.title + (chart.unit && `, ${chart.unit}`);
     const shownNow = chart.lines.map((line, number) => {
       const value = line.values[frame], size = Math.abs(value);
       const shown = chart.logarithmic || (size > 0 && size < 1e-2) || size >= 1e5 ? value.toExponential(1) : Number(value.toPrecision(3));

@@ -22,7 +22,7 @@ pub(crate) struct Page<'a> {
     pub(crate) figure: &'a Figure,
     /// s.
     pub(crate) times: &'a [f64],
-    /// Body to space.
+    /// Body to space; none on a group without a body.
     pub(crate) attitudes: &'a [UnitQuaternion<f64>],
     pub(crate) charts: &'a [Chart],
     /// Times in s, and names.
@@ -36,15 +36,15 @@ pub(crate) struct Chart {
     unit: &'static str,
     /// Whether the scale is logarithmic.
     logarithmic: bool,
-    lines: Vec<(&'static str, Vec<f64>)>,
+    lines: Vec<(String, Vec<f64>)>,
 }
 
 impl Chart {
-    pub(crate) fn linear(title: &'static str, unit: &'static str, lines: Vec<(&'static str, Vec<f64>)>) -> Self {
+    pub(crate) fn linear(title: &'static str, unit: &'static str, lines: Vec<(String, Vec<f64>)>) -> Self {
         Self { title, unit, logarithmic: false, lines }
     }
 
-    pub(crate) fn logarithmic(title: &'static str, unit: &'static str, lines: Vec<(&'static str, Vec<f64>)>) -> Self {
+    pub(crate) fn logarithmic(title: &'static str, unit: &'static str, lines: Vec<(String, Vec<f64>)>) -> Self {
         Self { title, unit, logarithmic: true, lines }
     }
 }
@@ -176,7 +176,8 @@ impl fmt::Display for Page<'_> {
             let q = self.attitudes[frame];
             [q.w, q.i, q.j, q.k]
         };
-        writeln!(f, "attitudes: {},", numbers(frames().flat_map(attitude)))?;
+        let shown = frames().filter(|_| !self.attitudes.is_empty());
+        writeln!(f, "attitudes: {},", numbers(shown.flat_map(attitude)))?;
         writeln!(f, "events: [")?;
         for (time, name) in self.events.iter().take(MOST_EVENTS) {
             writeln!(f, "[{time:?}, {}],", Text(name))?;

@@ -1,20 +1,22 @@
 //! The picture of a run: a path, and curves over time.
 
+use std::ops::Range;
+
+use liestep::motion::Factor;
 use liestep_plot::{
     Area, BLUE, Colour, GREEN, INK, Line, ORANGE, PURPLE, Panel, Path, PlotResult, SKY, VERMILION, Vertical, YELLOW,
     heading, legend, px, render, sphere,
 };
 use nalgebra::Vector3;
 
+use crate::file::group::Group;
 use crate::file::picture::{Curve, Plane, SpherePicture, Trace};
 use crate::file::sample::Sample;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::make::Run;
 
-/// Colours of a vector's components.
-const COLOURS: [Colour; 3] = [BLUE, ORANGE, GREEN];
-/// Colours of bodies, which further bodies repeat.
+/// Colours of bodies and of a vector's components, which further ones repeat.
 const BODY_COLOURS: [Colour; 8] = [BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILION, INK, YELLOW];
 
 impl SceneFile {
@@ -28,8 +30,16 @@ impl SceneFile {
         // A step that was chosen for an accuracy has more digits than are useful.
         let step = format!("{:.4e}", run.step()).parse().unwrap_or(run.step());
         let subtitle = format!("{}, h = {step} s{}", self.sum(), run.average);
+        let curve = |curve: &Curve, area: &Area<'_>| curve.draw(area, samples, (&self.group, &picture.axis.0));
+        if !self.group.is_rotation() {
+            return render((1200, 640), |area| {
+                let (header, body) = area.split_vertically(px(64));
+                heading(&header, &self.title, &subtitle)?;
+                let places = body.split_evenly((picture.panels.len().max(1), 1));
+                places.iter().zip(&picture.panels).try_for_each(|(place, panel)| curve(panel, place))
+            });
+        }
         let path = |area: &Area<'_>| picture.draw_path(area, samples);
-        let curve = |curve: &Curve, area: &Area<'_>| curve.draw(area, samples, &picture.axis.0);
         draw((&self.title, &subtitle), &[], path, &picture.panels, curve)
     }
 }
@@ -133,39 +143,68 @@ impl SpherePicture {
     }
 }
 
+/// Most lines with names of their own in a legend.
+const MOST_NAMES: usize = 8;
+
 impl Curve {
-    fn draw(self, area: &Area<'_>, samples: &[Sample], axis: &Vector3<f64>) -> PlotResult {
+    fn draw(self, area: &Area<'_>, samples: &[Sample], (group, axis): (&Group, &Vector3<f64>)) -> PlotResult {
         let Some(start) = samples.first() else {
             return Ok(());
         };
         let one = |title, up, vertical, height: &dyn Fn(&Sample) -> f64| {
             over_time(title, up, vertical, samples, height).draw(area)
         };
-        let three = |title, up, vector: &dyn Fn(&Sample) -> Vector3<f64>| {
-            let lines = COLOURS.iter().enumerate();
-            let lines = lines.map(|(k, colour)| line(samples, *colour, &|s| vector(s)[k])).collect();
+        let several = |title, up, part: Range<usize>, names: &[&str]| {
+            let colours = || BODY_COLOURS.into_iter().cycle();
+            let lines = part.clone().zip(colours());
+            let lines = lines.map(|(place, colour)| line(samples, colour, &|s| s.numbers[place])).collect();
             Panel::over_time(title, up, Vertical::Linear, lines).draw(area)?;
-            let names = ["1", "2", "3"];
-            let entries: Vec<_> = names.into_iter().zip(COLOURS).collect();
+            let entries: Vec<_> = names.iter().copied().zip(colours()).take(MOST_NAMES).collect();
             legend(area, (500, 12), &entries)
         };
+        let away = |s: &Sample| {
+            let pairs = s.numbers[group.in_space()].iter().zip(&start.numbers[group.in_space()]);
+            pairs.map(|(now, start)| (now - start).powi(2)).sum::<f64>().sqrt()
+        };
         let along = |s: &Sample| (s.angular_momentum - start.angular_momentum).z.abs();
-        let away = |s: &Sample| (s.angular_momentum - start.angular_momentum).norm();
-        let tilt = |s: &Sample| (s.bodies[0].matrix() * axis).angle(&Vector3::z()).to_degrees();
-        let unit = "kg m²/s";
+        let tilt = |s: &Sample| match s.bodies.first() {
+            Some(body) => (body.matrix() * axis).angle(&Vector3::z()).to_degrees(),
+            None => f64::NAN,
+        };
+        let is_body = group.is_rotation();
+        let (unit, rate) = if is_body { ("kg m²/s", "rad/s") } else { ("", "") };
+        let joules = group.unit_of_energy();
+        let components: Vec<&str> =
+            group.factors.iter().flat_map(|factor| &factor.components).map(|(name, _)| name.as_str()).collect();
+        let components: &[&str] = if is_body { &["1", "2", "3"] } else { &components };
+        let titled = |of_body, of_group| if is_body { of_body } else { of_group };
         match self {
-            Self::Rates => three("Angular velocity in the body", "rad/s", &|s| s.bodies[0].velocity),
-            Self::Tilt => one("Tilt of the axis from e₃", "degrees", Vertical::Linear, &tilt),
-            Self::Energy => one("Energy", "J", Vertical::Linear, &|s| s.energy),
-            Self::EnergyError => {
-                one("Energy: how far from its start", "J", Vertical::Logarithmic, &|s| (s.energy - start.energy).abs())
+            Self::Attitude => {
+                let columns: Vec<_> = group.factors.iter().flat_map(Factor::columns).collect();
+                let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
+                several("Attitude", "", group.attitude(), &names)
             }
-            Self::Momentum => three("Angular momentum in space", unit, &|s| s.angular_momentum),
+            Self::Rates => several(
+                titled("Angular velocity in the body", "Velocity of the body"),
+                rate,
+                group.velocity(),
+                components,
+            ),
+            Self::Tilt => one("Tilt of the axis from e₃", "degrees", Vertical::Linear, &tilt),
+            Self::Energy => one("Energy", joules, Vertical::Linear, &|s| s.energy),
+            Self::EnergyError => one("Energy: how far from its start", joules, Vertical::Logarithmic, &|s| {
+                (s.energy - start.energy).abs()
+            }),
+            Self::Momentum => {
+                several(titled("Angular momentum in space", "Momentum in space"), unit, group.in_space(), components)
+            }
             Self::VerticalMomentumError => {
                 one("Angular momentum along e₃: how far from its start", unit, Vertical::Logarithmic, &along)
             }
             Self::MomentumError => {
-                one("Angular momentum in space: how far from its start", unit, Vertical::Logarithmic, &away)
+                let of_group = "Momentum in space: how far from its start";
+                let title = titled("Angular momentum in space: how far from its start", of_group);
+                one(title, unit, Vertical::Logarithmic, &away)
             }
         }
     }

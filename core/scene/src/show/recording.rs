@@ -85,7 +85,7 @@ impl Recording {
         wrong: &dyn Fn(Option<usize>, String) -> Mistake,
     ) -> Result<Self, Mistake> {
         let get = |name: &str| columns.iter().find(|(other, _)| other == name).map(|(_, numbers)| numbers.clone());
-        let all = |column: Column| column.names().iter().map(|name| get(name)).collect::<Option<Vec<_>>>();
+        let all = |names: &[&str]| names.iter().map(|name| get(name)).collect::<Option<Vec<_>>>();
         let missing = |names: &[&str]| {
             let names = names.join(", ");
             wrong(None, format!("has no columns {names}; a recording needs them, as `liestep run --csv` writes them"))
@@ -94,8 +94,8 @@ impl Recording {
         if let Some(row) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
             return Err(wrong(Some(row + 1), "is not later than the row before".to_owned()));
         }
-        let [w, x, y, z] = &all(Column::QUATERNION).ok_or_else(|| missing(Column::QUATERNION.names()))?[..] else {
-            return Err(missing(Column::QUATERNION.names()));
+        let [w, x, y, z] = &all(&Column::QUATERNION).ok_or_else(|| missing(&Column::QUATERNION))?[..] else {
+            return Err(missing(&Column::QUATERNION));
         };
         let attitude = |row: usize| {
             let quaternion = Quaternion::new(w[row], x[row], y[row], z[row]);
@@ -108,11 +108,11 @@ impl Recording {
         if let Some(energy) = get("energy") {
             charts.push(energy_error(&energy));
         }
-        if let Some([x, y, z]) = all(Column::SPATIAL_MOMENTUM).as_deref() {
+        if let Some([x, y, z]) = all(&Column::SPATIAL_MOMENTUM).as_deref() {
             let momentum: Vec<_> = (0..times.len()).map(|row| Vector3::new(x[row], y[row], z[row])).collect();
             charts.push(momentum_error(&momentum));
         }
-        if let Some([x, y, z]) = all(Column::VELOCITY).as_deref() {
+        if let Some([x, y, z]) = all(&Column::VELOCITY).as_deref() {
             charts.push(rates([x.clone(), y.clone(), z.clone()]));
         }
         let figure = Figure::of(&Matrix3::identity(), None, &Vector3::z());
@@ -124,18 +124,34 @@ impl Recording {
         let samples = run.samples();
         let collect = |value: &dyn Fn(&Sample) -> f64| samples.iter().map(value).collect::<Vec<_>>();
         let attitude = |sample: &Sample| {
-            let [w, x, y, z] = sample.bodies[0].quaternion;
-            UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))
+            let [w, x, y, z] = sample.bodies.first()?.quaternion;
+            Some(UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)))
         };
-        let attitudes: Vec<_> = samples.iter().map(attitude).collect();
-        let momentum: Vec<_> = samples.iter().map(|sample| sample.angular_momentum).collect();
+        // None on a group without a body.
+        let attitudes: Vec<_> = samples.iter().filter_map(attitude).collect();
         let (axis, arm) = (scene.picture.axis.0, scene.gravity.map(|gravity| gravity.rho.value));
-        let charts = vec![
-            tilt(&attitudes, &axis),
-            energy_error(&collect(&|sample| sample.energy)),
-            momentum_error(&momentum),
-            rates([0, 1, 2].map(|k| collect(&|sample| sample.bodies[0].velocity[k]))),
-        ];
+        let energy = energy_error(&collect(&|sample| sample.energy));
+        let charts = if scene.group.is_rotation() {
+            let momentum: Vec<_> = samples.iter().map(|sample| sample.angular_momentum).collect();
+            let rates = rates([0, 1, 2].map(|k| collect(&|sample| sample.bodies[0].velocity[k])));
+            vec![tilt(&attitudes, &axis), energy, momentum_error(&momentum), rates]
+        } else {
+            let columns = Column::of_group(&scene.group);
+            let chart = |title, key: &str| {
+                let column = columns.iter().find(|column| column.key() == key);
+                let names = column
+                    .iter()
+                    .flat_map(|column| column.names().filter_map(|name| Some((name, column.place(name)?))));
+                let lines = names.map(|(name, place)| (name.to_owned(), collect(&|sample| sample.numbers[place])));
+                Chart::linear(title, "", lines.collect())
+            };
+            vec![
+                chart("Attitude", "attitude"),
+                energy,
+                chart("Velocity of the body", "velocity"),
+                chart("Momentum in space", "spatial-momentum"),
+            ]
+        };
         let event = |happening: &Happening| {
             scene.event.get(happening.event).map(|event| (happening.sample.time, event.name.clone()))
         };
@@ -151,7 +167,7 @@ impl Recording {
     }
 
     /// One page that plays the motion in a browser without loading anything: the body, the path of its axis in space,
-    /// and the recorded quantities over time.
+    /// and the recorded quantities over time. On another group than SO(3) it has the quantities alone.
     #[must_use]
     pub fn page(&self) -> String {
         let Self { title, about, figure, times, attitudes, charts, events } = self;
@@ -169,25 +185,26 @@ impl SceneFile {
 
 fn tilt(attitudes: &[UnitQuaternion<f64>], axis: &Vector3<f64>) -> Chart {
     let degrees = attitudes.iter().map(|attitude| (attitude * axis).angle(&Vector3::z()).to_degrees());
-    Chart::linear("Tilt of the axis from e₃", "°", vec![("tilt", degrees.collect())])
+    Chart::linear("Tilt of the axis from e₃", "°", vec![("tilt".to_owned(), degrees.collect())])
 }
 
 fn energy_error(energy: &[f64]) -> Chart {
     let start = energy.iter().copied().find(|energy| energy.is_finite()).unwrap_or_default();
     let error = energy.iter().map(|energy| (energy - start).abs()).collect();
-    Chart::logarithmic("Energy, from its start", "J", vec![("energy", error)])
+    Chart::logarithmic("Energy, from its start", "J", vec![("energy".to_owned(), error)])
 }
 
 fn momentum_error(momentum: &[Vector3<f64>]) -> Chart {
     let is_finite = |momentum: &Vector3<f64>| momentum.iter().all(|part| part.is_finite());
     let start = momentum.iter().copied().find(is_finite).unwrap_or_default();
     let error = |length: fn(Vector3<f64>) -> f64| momentum.iter().map(|m| length(m - start)).collect();
-    let lines = vec![("along e₃", error(|m| m.z.abs())), ("all", error(|m| m.norm()))];
+    let lines = [("along e₃", error(|m| m.z.abs())), ("all", error(|m| m.norm()))];
+    let lines = lines.map(|(name, values)| (name.to_owned(), values)).into();
     Chart::logarithmic("Momentum in space, from its start", "kg m²/s", lines)
 }
 
 fn rates(components: [Vec<f64>; 3]) -> Chart {
-    let lines = ["Ω₁", "Ω₂", "Ω₃"].into_iter().zip(components).collect();
+    let lines = ["Ω₁", "Ω₂", "Ω₃"].map(str::to_owned).into_iter().zip(components).collect();
     Chart::linear("Angular velocity in the body", "rad/s", lines)
 }
 
@@ -205,7 +222,7 @@ struct Table {
 fn numbers(text: &str) -> Result<Table, (usize, usize, String)> {
     let (names, below, rows) = header(text.strip_prefix('\u{feff}').unwrap_or(text));
     // A motion requires these columns.
-    let is_needed = |name: &String| name == "t" || Column::QUATERNION.names().contains(&name.as_str());
+    let is_needed = |name: &String| name == "t" || Column::QUATERNION.contains(&name.as_str());
     let needed: Vec<_> = names.iter().map(is_needed).collect();
     let (mut columns, mut lines) = (vec![Vec::new(); names.len()], Vec::new());
     for (number, line) in (below..).zip(rows.lines()).filter(|(_, line)| !line.trim().is_empty()) {

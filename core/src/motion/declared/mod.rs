@@ -299,7 +299,7 @@ fn kicked<S: Effect>(constants: &S::Constants, momentum: &Vector<S>, w: &S::Adve
 /// The Newton Jacobian is that at rest plus a matrix of rank one that is proportional to the right-hand side. If the
 /// latter is less than `1/ε` times this fraction of the former, `10¹²` times in `f64`, its rounding doesn't affect the
 /// former.
-const RATIO: f64 = 1.0 / 4096.0;
+pub const RATIO: f64 = 1.0 / 4096.0;
 
 /// The determinant and the trace of the Newton Jacobian for a body at rest.
 fn jacobian_at_rest<S: Effect>(scene: &S, constants: &S::Constants) -> (Scalar<S>, Scalar<S>) {

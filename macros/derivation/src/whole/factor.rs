@@ -21,8 +21,6 @@ pub struct MatrixFactor {
     /// The coordinates of increments.
     pub chart: Chart,
     relations: Relations,
-    /// The bilinear form that is restored, on this many rows.
-    regular_form: Option<(usize, Vec<f64>)>,
     /// The place of its first entry in an attitude.
     pub entry: usize,
     /// The place of its first component in a velocity or a momentum.
@@ -34,8 +32,7 @@ impl MatrixFactor {
         let basis = Basis::of(generators)?;
         let (form, chart) = (basis.form(), basis.chart()?);
         let relations = Relations::of(&basis);
-        let regular_form = Relations::regular_form(form, basis.size);
-        Ok(Self { name: name.to_owned(), basis, form, chart, relations, regular_form, entry, component })
+        Ok(Self { name: name.to_owned(), basis, form, chart, relations, entry, component })
     }
 
     /// The number of rows of its matrices.
@@ -50,10 +47,11 @@ impl MatrixFactor {
         self.basis.dimension()
     }
 
-    /// Whether rounding's distance from the group is taken back, by [`Programs::restored`](super::Programs::restored).
+    /// Whether rounding's distance from the group is taken back, by [`Programs::restored`](super::Programs::restored). Groups
+    /// that aren't orthogonal have elements of any size, whose roundings are no measure of a distance.
     #[must_use]
     pub const fn is_restored(&self) -> bool {
-        self.regular_form.is_some()
+        matches!(self.form, Form::Rotation | Form::Orthogonal)
     }
 
     /// The distance of a matrix from the group; none of its entries is known.
@@ -61,9 +59,9 @@ impl MatrixFactor {
         self.relations.defect(words, self.form, g)
     }
 
-    /// The distance of a matrix from the group and a nearer matrix, if there is a form to restore.
+    /// The distance of a matrix from the group and a nearer matrix, where that is restored.
     pub(super) fn restored(&self, words: &mut Words, g: &Matrix) -> Option<Vec<Value>> {
-        self.regular_form.as_ref().map(|form| restored(words, g, form))
+        self.is_restored().then(|| restored(words, g))
     }
 
     /// The factor's part of the components of all factors.

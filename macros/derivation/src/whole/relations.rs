@@ -6,7 +6,7 @@
 //! describe all classical groups and their affine extensions; an invariant of the third order isn't among them.
 
 use super::basis::{Basis, Form};
-use super::linear::{inverse_of, kernel};
+use super::linear::kernel;
 use super::matrix::Matrix;
 use super::values::{Value, Words};
 use crate::staged::Function;
@@ -101,29 +101,17 @@ impl Relations {
         let square = words.dot(&missed, &missed);
         words.apply(Function::Sqrt, square)
     }
-
-    /// The number of rows of an orthogonal group, and the form that it leaves alone: its invariance can be restored. Other groups
-    /// have elements of any size, whose roundings are no measure of a distance; and the library restores rotations alone.
-    pub(super) fn regular_form(form: Form, size: usize) -> Option<(usize, Vec<f64>)> {
-        let identity = || (0..size * size).map(|at| f64::from(u8::from(at / size == at % size))).collect();
-        matches!(form, Form::Rotation | Form::Orthogonal).then(|| (size, identity()))
-    }
 }
 
-/// The distance `‖gᵀB g − B‖`, and `g + g B⁻¹ (B − gᵀB g)/2`, a Newton step to the matrices that leave the form `B` alone:
-/// with `B = I` that of the polar decomposition. The form is one of the first rows and columns.
-pub(super) fn restored(words: &mut Words, g: &Matrix, (rows, form): &(usize, Vec<f64>)) -> Vec<Value> {
-    let b = Matrix::known(*rows, form);
-    let block = Matrix::of(*rows, *rows, |i, j| g.at(i, j));
-    let image = b.times(words, &block);
-    let product = block.transpose().times(words, &image);
-    let (missed, rest) = (product.minus(words, &b), b.minus(words, &product));
+/// The distance `‖gᵀg − I‖` of a matrix from the orthogonal ones, and `g + g (I − gᵀg)/2`, a Newton step of the polar
+/// decomposition.
+pub(super) fn restored(words: &mut Words, g: &Matrix) -> Vec<Value> {
+    let (one, product) = (Matrix::identity(g.rows), g.transpose().times(words, g));
+    let (missed, rest) = (product.minus(words, &one), one.minus(words, &product));
     let distance = norm(words, &missed);
-    let rest = Matrix::known(*rows, &inverse_of(*rows, form).unwrap_or_default()).times(words, &rest);
-    let change = block.times(words, &rest).scaled(words, Value::of(0.5));
-    let nearer = block.plus(words, &change);
-    let entry = |i: usize, j: usize| if i < *rows && j < *rows { nearer.at(i, j) } else { g.at(i, j) };
-    [vec![distance], Matrix::of(g.rows, g.rows, entry).entries].concat()
+    let change = g.times(words, &rest).scaled(words, Value::of(0.5));
+    let nearer = g.plus(words, &change);
+    [vec![distance], nearer.entries].concat()
 }
 
 /// The Frobenius norm of a matrix that is its transpose or the negative of it: twice what is above the diagonal.

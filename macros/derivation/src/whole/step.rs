@@ -204,13 +204,14 @@ impl WholeStep {
 impl Writer<'_> {
     fn programs(&self) -> Programs {
         let Limit { inertia, safe, velocity, momentum, hessian, energy } = self.limit();
+        let [iterate, newton] = self.iterate_and_newton();
         Programs {
             constants: self.staged.programs.constants.clone(),
             target: self.target(),
-            iterate: self.iterate(),
+            iterate,
             again: self.again(),
             finish: self.finish(),
-            newton: self.newton(),
+            newton,
             branch: self.branch(),
             safe: (!self.staged.has_constant_inertia).then_some(safe),
             seen: self.seen(),
@@ -237,21 +238,16 @@ impl Writer<'_> {
         words.program(&target)
     }
 
-    fn iterate(&self) -> Program {
+    /// Programs of a Newton iteration: the usual one, and the system for a solve with care.
+    fn iterate_and_newton(&self) -> [Program; 2] {
         let (mut words, half) = (Words::default(), Value::inputs(Array::Half, self.dimension()));
         let (residual, jacobian) = self.system(&mut words, &half, &Value::Input);
         let Factorisation { factors, determinants } = self.pattern.factorise(&mut words, &jacobian);
         let update = self.pattern.solve(&mut words, &factors, determinants[0][0], &residual);
+        let determinants = determinants.as_flattened();
+        let newton = words.program(&[residual.as_slice(), &jacobian.entries, &update, determinants].concat());
         let next = updated(&mut words, &half, &update);
-        words.program(&[next.as_slice(), determinants.as_flattened(), &factors].concat())
-    }
-
-    fn newton(&self) -> Program {
-        let (mut words, half) = (Words::default(), Value::inputs(Array::Half, self.dimension()));
-        let (residual, jacobian) = self.system(&mut words, &half, &Value::Input);
-        let Factorisation { factors, determinants } = self.pattern.factorise(&mut words, &jacobian);
-        let update = self.pattern.solve(&mut words, &factors, determinants[0][0], &residual);
-        words.program(&[residual.as_slice(), &jacobian.entries, &update, determinants.as_flattened()].concat())
+        [words.program(&[next.as_slice(), determinants, &factors].concat()), newton]
     }
 
     fn branch(&self) -> Program {

@@ -1,0 +1,198 @@
+//! Scenes on any group: orders, momenta and defects, and starts.
+
+use liestep::groups::{Heisenberg, LieGroup, SE2, SE3, SL2, SO2, SO3, SU2};
+use liestep::numbers::{Coordinates, Entries};
+use liestep_scene::Sample;
+use nalgebra::{DMatrix, DVector};
+
+use crate::reference::{
+    Generators, Reference, affine, apart, assert_orders, blocks, drifts, in_space, last, metric, moving, of_traces,
+    one, orthogonal, poses, product, second, special_linear, symplectic, turns, velocity, written,
+};
+
+const RIGID: &str = "((F - I) * J * (F - I).transpose()).trace() / (2 * h)";
+/// Half of it is that of `I − F⁻¹` where the group isn't rigid, or the order is one.
+const ANY: &str = "(((F - I) * J * (F - I).transpose()).trace()
+    + ((I - inverse(F)) * J * (I - inverse(F)).transpose()).trace()) / (4 * h)";
+
+/// Free motion on groups by generators: orders, momentum in space, defect. SE(3) × SO(3) is one of them, by blocks.
+#[test]
+fn groups_of_the_files_own() {
+    let groups: [(&str, Generators, &str); 7] = [
+        ("SL(3)", special_linear(), ANY),
+        ("Sp(4)", symplectic(), ANY),
+        ("SO(4)", orthogonal(4), RIGID),
+        ("SE_2(3)", poses(5), RIGID),
+        ("affine maps of the plane", affine(2), ANY),
+        ("affine maps of space", affine(3), ANY),
+        ("SE(3) x SO(3)", product(&[poses(4), turns()]), RIGID),
+    ];
+    for (name, generators, l_d) in groups {
+        let (n, J) = (generators[0].nrows(), metric(generators[0].nrows()));
+        let list: Vec<_> = generators.iter().map(written).collect();
+        let xi = moving(generators.len());
+        let text = format!(
+            "[lagrangian]\ngroup = \"Own\"\ngenerators = [{}]\nl_d = \"\"\"\n{l_d}\"\"\"\nJ = {}\n[start]\nvelocity = {xi:?}\n",
+            list.join(", "),
+            written(&J)
+        );
+        let reference = Reference::free(&generators, of_traces(&generators, &J));
+        let (_, exact) = reference.end(DMatrix::identity(n, n), &xi, 1.0, 400);
+        assert_orders(name, &text, &exact);
+        for method in ["", "Suzuki 4"] {
+            let [momentum, defect] = drifts(&second(&text, method, 100), generators.len());
+            assert!(momentum < 1e-14 && defect < 1e-13, "{name} {method}: {momentum:e} {defect:e}");
+        }
+    }
+}
+
+fn library<G: LieGroup<Scalar = f64>>() -> Generators {
+    let generator = |k| {
+        let mut entries = Vec::new();
+        G::hat(&G::Vector::axis(k)).each(&mut |entry| entries.push(entry));
+        let n = (1..=entries.len()).find(|n| n * n == entries.len()).unwrap();
+        DMatrix::from_row_slice(n, n, &entries)
+    };
+    (0..G::DIMENSION).map(generator).collect()
+}
+
+/// Geodesics of a dense left-invariant metric on the groups of the library, against their structure constants.
+#[test]
+fn geodesics_on_the_librarys_groups() {
+    let groups: [(&str, Generators); 7] = [
+        ("SO2", library::<SO2<f64>>()),
+        ("SO3", library::<SO3<f64>>()),
+        ("SE2", library::<SE2<f64>>()),
+        ("SE3", library::<SE3<f64>>()),
+        ("SU2", library::<SU2<f64>>()),
+        ("SL2", library::<SL2<f64>>()),
+        ("Heisenberg", library::<Heisenberg<f64>>()),
+    ];
+    for (name, generators) in groups {
+        let (n, K) = (generators[0].nrows(), metric(generators.len()));
+        let xi: Vec<f64> = moving(generators.len()).iter().map(|part| 3.0 * part).collect();
+        let (kinetic, value) = if n == 2 && generators.len() == 1 {
+            ("k * xi.norm_squared() / 2", "k = 1".to_owned())
+        } else {
+            ("xi.dot(K * xi) / 2", format!("K = {}", written(&K)))
+        };
+        let euler = if name == "SO3" { "euler = [0, 0, 0]\n" } else { "" };
+        let text = format!(
+            "[lagrangian]\ngroup = \"{name}\"\nvelocity = \"xi\"\ndiscretise = \"trapezoid(Cayley)\"\nl = \"{kinetic}\"\n\
+             {value}\n[start]\n{euler}velocity = {xi:?}\n"
+        );
+        let [momentum, defect] = drifts(&second(&text, "", 100), generators.len());
+        assert!(momentum < 1e-14 && defect < 1e-13, "{name}: {momentum:e} {defect:e}");
+        if generators.len() > 1 {
+            let reference = Reference::free(&generators, K);
+            assert_orders(name, &text, &reference.end(DMatrix::identity(n, n), &xi, 1.0, 400).1);
+        }
+    }
+}
+
+/// Three bodies that see each other by potentials of their relative attitudes: orders, and the sum of their momenta.
+#[test]
+fn three_bodies_that_see_each_other() {
+    let text = r#"[lagrangian]
+group = { F_1 = "SO3", F_2 = "SO3", F_3 = "SO3" }
+advected = { Q = "F_2.seen_from(F_1)", P = "F_3.seen_from(F_1)" }
+l_d = """
+(((F_1 - I) * A * (F_1 - I).transpose()).trace() + ((F_2 - I) * B * (F_2 - I).transpose()).trace()
+  + ((F_3 - I) * B * (F_3 - I).transpose()).trace()) / (2 * h)
+  + h * k * ((D * Q).trace() + (D * F_1.transpose() * Q * F_2).trace() + P.trace()
+    + (F_1.transpose() * P * F_3).trace()) / 2"""
+A = [[1, 0, 0], [0, 1.5, 0], [0, 0, 2]]
+B = [[1, 0, 0.1], [0, 1.5, 0], [0.1, 0, 2]]
+D = [[1, 0.5, 0], [0, 1, 0], [0.2, 0, 2]]
+k = 2
+[start]
+F_1 = { euler = [0, 0, 0], velocity = [0.1, 1, 0.2] }
+F_2 = { euler = [0, "30 deg", 0], velocity = [0.1, 0, 0.2] }
+F_3 = { quaternion = [1, 0.2, 0, 0], velocity = [0.1, 0, -1] }
+"#;
+    let J = |rows: [f64; 9]| DMatrix::from_row_slice(3, 3, &rows);
+    let (A, B) = (J([1.0, 0.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, 2.0]), J([1.0, 0.0, 0.1, 0.0, 1.5, 0.0, 0.1, 0.0, 2.0]));
+    let D = J([1.0, 0.5, 0.0, 0.0, 1.0, 0.0, 0.2, 0.0, 2.0]);
+    let generators = product(&[turns(), turns(), turns()]);
+    let kinetic = of_traces(&generators, &blocks(&[&A, &B, &B]));
+    let potential = |g: &DMatrix<f64>| {
+        let part = |k: usize| g.view((3 * k, 3 * k), (3, 3)).into_owned();
+        let seen = |other: usize| part(0).transpose() * part(other);
+        -2.0 * ((&D * seen(1)).trace() + seen(2).trace())
+    };
+    let reference = Reference { bias: DVector::zeros(9), generators: &generators, kinetic, potential: &potential };
+    let about_x = |angle: f64| {
+        let turn = nalgebra::Rotation3::from_axis_angle(&nalgebra::Vector3::x_axis(), angle);
+        DMatrix::from_row_slice(3, 3, turn.matrix().transpose().as_slice())
+    };
+    let g = blocks(&[&DMatrix::identity(3, 3), &about_x(30_f64.to_radians()), &about_x(2.0 * 0.2_f64.atan())]);
+    let (_, exact) = reference.end(g, &[0.1, 1.0, 0.2, 0.1, 0.0, 0.2, 0.1, 0.0, -1.0], 1.0, 400);
+    assert_orders("three bodies", text, &exact);
+    let sum = |sample: &Sample| -> Vec<f64> {
+        let momentum = in_space(sample, 9);
+        (0..3).map(|k| momentum[k] + momentum[3 + k] + momentum[6 + k]).collect()
+    };
+    // Potentials of relative attitudes turn nothing as a whole.
+    let plain = text.replace("(D * Q)", "Q").replace("D * F_1.transpose()", "F_1.transpose()");
+    let plain = plain.replace("D = [[1, 0.5, 0], [0, 1, 0], [0.2, 0, 2]]\n", "");
+    for text in [text, &plain] {
+        let run = second(text, "", 100);
+        let first = sum(&run.samples()[0]);
+        let drift = run.samples().iter().map(|sample| apart(&sum(sample), &first)).fold(0.0, f64::max);
+        assert!(drift < 1e-13, "{drift:e}");
+    }
+    // Without a step, to 1e-6.
+    let scene = one(&format!("title = \"three\"\n{text}[run]\nduration = 1\n"));
+    let run = scene.run().unwrap();
+    let off = apart(velocity(last(&run), 9), exact.as_slice());
+    assert!(off < 1e-6 && scene.summary(&run).contains("the end is off by at most about"), "{off:e}");
+}
+
+/// A body with a centre of mass aside, on SE(3): gravity by an advected covector, a start by euler angles and position,
+/// by a matrix, and by a momentum.
+#[test]
+fn a_body_on_se3() {
+    let text = r#"[lagrangian]
+group = "SE3"
+advected = { w = "up" }
+l_d = """
+((F - I) * K * (F - I).transpose()).trace() / (2 * h) - h * (w.dot(rho) + w.dot(F * rho)) / 2
+    - h * k * (w.dot(rho).powi(2) + w.dot(F * rho).powi(2)) / 2"""
+K = [[1, 0, 0, 0.2], [0, 1.5, 0, 0], [0, 0, 2, 0], [0.2, 0, 0, 2]]
+k = 3
+rho = [0.1, 0.2, 0.5, 1]
+up = [0, 0, 1, 0]
+[start]
+euler = [0, "30 deg", 0]
+position = [0, 0, 1]
+velocity = [0.1, 0.2, 3, 0, 1, 0]
+"#;
+    let K = DMatrix::from_row_slice(
+        4,
+        4,
+        &[1.0, 0.0, 0.0, 0.2, 0.0, 1.5, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.2, 0.0, 0.0, 2.0],
+    );
+    let generators = poses(4);
+    let potential = |g: &DMatrix<f64>| {
+        let height = (g * DVector::from_column_slice(&[0.1, 0.2, 0.5, 1.0]))[2];
+        height + 3.0 * height.powi(2)
+    };
+    let kinetic = of_traces(&generators, &K);
+    let reference = Reference { bias: DVector::zeros(6), generators: &generators, kinetic, potential: &potential };
+    let (sine, cosine) = 30_f64.to_radians().sin_cos();
+    let mut g = DMatrix::identity(4, 4);
+    (g[(1, 1)], g[(1, 2)], g[(2, 1)], g[(2, 2)], g[(2, 3)]) = (cosine, -sine, sine, cosine, 1.0);
+    let (place, exact) = reference.end(g.clone(), &[0.1, 0.2, 3.0, 0.0, 1.0, 0.0], 1.0, 400);
+    assert_orders("SE(3)", text, &exact);
+    let fine = second(text, "Kahan-Li 8", 100);
+    let entries = &last(&fine).numbers[..16];
+    assert!(apart(entries, place.transpose().as_slice()) < 1e-9, "{place}");
+    // Other words for one start.
+    let same = second(text, "", 100);
+    let by_matrix =
+        text.replace("euler = [0, \"30 deg\", 0]\nposition = [0, 0, 1]", &format!("attitude = {}", written(&g)));
+    assert!(apart(&last(&second(&by_matrix, "", 100)).numbers, &last(&same).numbers) < 1e-12);
+    let momentum = &same.samples()[0].numbers[22..28];
+    let by_momentum = text.replace("velocity = [0.1, 0.2, 3, 0, 1, 0]", &format!("momentum = {momentum:?}"));
+    assert!(apart(&last(&second(&by_momentum, "", 100)).numbers, &last(&same).numbers) < 1e-12);
+}
