@@ -35,5 +35,5 @@ pub use latex::latex;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use specialised::specialised;
 pub use term::{Late, numbers};
-pub use whole::{Whole, WholeError};
+pub use whole::{Transition, Whole, WholeError};
 pub use written::{c, rust};

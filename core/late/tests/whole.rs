@@ -1,6 +1,9 @@
 //! Whole steps on groups that are a part of the text: order, momentum in space and the group's relation; compositions,
 //! substeps and prescribed values as the typed ones; errors.
 
+#[path = "whole/tangent.rs"]
+mod tangent;
+
 use declarations::FullTop;
 use liestep::mechanics::Effect as _;
 use liestep::methods::CompositionScheme;

@@ -16,7 +16,7 @@
 //! Deliberately not here: splittings, collocation, joints and systems, densities, compensated sums. They are typed, and
 //! behind the same [`Propagator`](liestep::motion::Propagator).
 //!
-//! The files depend on each other in one direction: `stepper → composed → step → diagnosis → {care → iteration, constants} →
+//! The files depend on each other in one direction: `inputs → {stepper, tangent} → composed → step → diagnosis → {care → iteration, constants} →
 //! limit → {codes, linear}`.
 
 mod care;
@@ -24,10 +24,13 @@ mod codes;
 mod composed;
 mod constants;
 mod diagnosis;
+mod inputs;
 mod iteration;
 mod limit;
 mod linear;
 mod step;
 mod stepper;
+mod tangent;
 
+pub use inputs::Transition;
 pub use stepper::{Whole, WholeError};
