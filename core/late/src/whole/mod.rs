@@ -16,9 +16,10 @@
 //! Deliberately not here: splittings, collocation, joints and systems, densities, compensated sums. They are typed, and
 //! behind the same [`Propagator`](liestep::motion::Propagator).
 //!
-//! The files depend on each other in one direction: `inputs → {stepper, tangent} → composed → step → diagnosis → {care → iteration, constants} →
+//! The files depend on each other in one direction: `plant → {algebra, inputs}`, `inputs → {stepper, tangent} → composed → step → diagnosis → {care → iteration, constants} →
 //! limit → {codes, linear}`.
 
+mod algebra;
 mod care;
 mod codes;
 mod composed;
@@ -28,6 +29,7 @@ mod inputs;
 mod iteration;
 mod limit;
 mod linear;
+mod plant;
 mod step;
 mod stepper;
 mod tangent;
