@@ -97,7 +97,7 @@ impl<S: DiscreteLagrangian<Scalar = f64, Group = SO3>> Plan<S> for Verlet<S> {
     }
 
     fn cost(&self) -> Cost {
-        // A turn costs two sines and about as many other operations.
+        // A turn about an axis costs two sines and about as many other operations.
         Cost::of_stages(Operations { step: 80, iteration: 0 }, 5)
     }
 }

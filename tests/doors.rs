@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 /// The tip by the method DOP853 of `SciPy` in quaternions, at a tolerance of 1e-13.
 const TIP: [f64; 3] = [0.576_090_70, 0.407_715_11, 0.708_440_47];
 
-/// The first listing of README in this language that begins so.
+/// The first listing of README in this language that starts with `beginning`.
 fn listing(language: &str, beginning: &str) -> String {
     let readme = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../README.md")).unwrap();
     let fence = format!("```{language}\n");
@@ -33,7 +33,8 @@ fn a_file() {
     assert_tip(last.bodies[0].attitude.as_matrix() * Vector3::z());
 }
 
-/// The interpreter that the variable `LIESTEP_PYTHON` names, or `python3`, where it has the package.
+/// The Python program of README, run by the interpreter that `LIESTEP_PYTHON` names, or by `python3`, if that has the
+/// package.
 #[test]
 fn python() {
     let python = std::env::var("LIESTEP_PYTHON").unwrap_or_else(|_| "python3".to_owned());

@@ -1,4 +1,4 @@
-//! A crate that denies what it can: an expansion adds no warning, under clippy's pedantic lints neither.
+//! A crate that denies all warnings: an expansion adds none, under clippy's pedantic lints neither.
 
 #![deny(warnings, missing_docs, non_snake_case, unused, rust_2018_idioms, unreachable_pub)]
 #![deny(clippy::all, clippy::pedantic, clippy::nursery)]
@@ -17,7 +17,7 @@ use nalgebra::Vector3;
 )]
 #[derive(Clone, Debug)]
 pub struct Top<T: Real> {
-    /// About the pivot, kg m².
+    /// Inertia about the pivot, kg m².
     pub inertia: NonstandardInertia<T>,
     /// The weight times the centre of mass, N m.
     pub lever: Vector3<T>,

@@ -40,7 +40,7 @@ pub enum SetupError {
     /// A method that the scene, or its group, doesn't have.
     #[error("the method {cause}")]
     Method {
-        /// The reason, as a predicate, and what to take.
+        /// The reason, as a predicate, and the method to take instead.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         cause: Text,
     },
@@ -49,12 +49,12 @@ pub enum SetupError {
         "the {what} has {found} numbers and not {expected}; give the entries of matrices row by row, and all components"
     )]
     Length {
-        /// The list.
+        /// Name of the list.
         #[cfg_attr(all(feature = "serde", feature = "std"), serde(deserialize_with = "kept"))]
         what: Text,
-        /// Its length.
+        /// Length of the list.
         found: usize,
-        /// The length of the group's.
+        /// Length of the group's list.
         expected: usize,
     },
     /// A parameter of one of several bodies has a value that can't be used.

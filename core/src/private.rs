@@ -82,7 +82,7 @@ pub fn chord<L: ContinuousLagrangian, R: Retraction<L::Group>>(
 pub trait Parameter {
     /// The type with which the expression computes.
     type Value;
-    /// The scalar type of its entries.
+    /// The scalar type of the value's entries.
     type Scalar: Real;
 
     /// The value in the expression.

@@ -1,4 +1,5 @@
-//! The rooms of the sources import each other in one direction; and what the guide and README name is there.
+//! The rooms of the sources import each other in one direction; and names, files and commands in the guide and README
+//! exist.
 
 #[path = "rooms/circles.rs"]
 mod circles;
@@ -9,7 +10,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// What each room may import besides itself, as `src/lib.md` draws it. Documentation may name everything.
+/// The rooms that each room may import, as `src/lib.md` draws them. Documentation may name everything.
 const MAY_IMPORT: [(&str, &[&str]); 16] = [
     ("error", &[]),
     ("numbers", &[]),
@@ -53,7 +54,7 @@ fn tests_are_no_code() {
     assert_eq!(without_tests(text), "mod one;\nfn two() {}\n");
 }
 
-/// The rooms that a text names behind `crate::`.
+/// The rooms in a text, by its paths that begin with `crate::`.
 fn named(code: &str) -> BTreeSet<&str> {
     let after = code.match_indices("crate::").filter(|(place, _)| !code[..*place].ends_with('$'));
     after
@@ -71,14 +72,14 @@ fn check(room: &str, path: &Path, mistakes: &mut Vec<String>) {
         }
         return;
     }
-    // Tests may import what they like.
+    // Tests may import any room.
     if path.extension().is_none_or(|extension| extension != "rs") || path.ends_with("tests.rs") {
         return;
     }
     let code = code(path);
     let (_, allowed) = MAY_IMPORT.iter().find(|(name, _)| *name == room).unwrap();
     for other in named(&code) {
-        // A brace behind `crate::` holds the macros that stand at the root.
+        // A list of imports behind `crate::` has the macros of the crate's root.
         if !other.is_empty() && other != room && !allowed.contains(&other) {
             mistakes.push(format!("{}: `{room}` mustn't import `{other}`", path.display()));
         }
@@ -99,7 +100,7 @@ fn rooms_import_in_one_direction() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         let has_sources = path.join("mod.rs").exists() || path.extension().is_some_and(|extension| extension == "rs");
-        // The front door and what expansions name are above all rooms; pictures are in none.
+        // The root and `private` are above all rooms; pictures are in none.
         if has_sources && name != "lib" && name != "private" {
             check(&name, &path, &mut mistakes);
             rooms.insert(name);
@@ -107,7 +108,7 @@ fn rooms_import_in_one_direction() {
     }
     assert!(mistakes.is_empty(), "{}", mistakes.join("\n"));
     assert_eq!(rooms, MAY_IMPORT.iter().map(|(name, _)| (*name).to_owned()).collect());
-    // One direction: whoever imports a room stands above it in the table.
+    // The table is in order: a room imports only rooms below it.
     for (place, (name, allowed)) in MAY_IMPORT.iter().enumerate() {
         for other in *allowed {
             assert!(MAY_IMPORT[..place].iter().any(|(below, _)| below == other), "`{name}` is below `{other}`");
@@ -125,7 +126,7 @@ fn root() -> Option<&'static Path> {
     None
 }
 
-/// The files of a folder and of those below it that aren't made, by their paths from the root.
+/// The files of a folder and its subfolders with this extension, by their paths from the root, without build outputs.
 fn files(root: &Path, folder: &str, extension: &str) -> Vec<String> {
     let (mut open, mut files) = (vec![root.join(folder)], Vec::new());
     while let Some(path) = open.pop() {
@@ -140,12 +141,12 @@ fn files(root: &Path, folder: &str, extension: &str) -> Vec<String> {
     files
 }
 
-/// What stands between backquotes.
+/// The texts between backquotes.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.lines().flat_map(|line| line.split('`').skip(1).step_by(2))
 }
 
-/// The chapters, and the pages that they lead to.
+/// The chapters of the guide by name, with their text.
 fn chapters() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/guide");
     let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
@@ -181,7 +182,8 @@ fn every_chapter_is_listed_and_leads_on() {
         assert!(list.contains(&format!("| [`{name}`] |")), "the list has no {name}");
         assert!(text.lines().count() <= 400, "{name} is too long to be read at once");
     }
-    // From the first to the last, each once; who comes from the thesis has read another way before.
+    // The links from chapter to chapter lead from the first to the last, each once; the chapter for readers of the
+    // thesis stands before them.
     let mut left: BTreeSet<&str> = chapters.iter().map(|(name, _)| name.as_str()).collect();
     left.remove("README");
     left.remove("thesis");
@@ -203,14 +205,14 @@ fn next(chapter: &str) -> Option<&str> {
     leads(chapter, "Next: [")
 }
 
-/// The chapter that the head of another leads to, behind this word.
+/// The chapter that the head of another chapter links to, behind this word.
 fn leads<'t>(chapter: &'t str, word: &str) -> Option<&'t str> {
     let (_, rest) = chapter.lines().take(5).find_map(|line| line.split_once(word))?;
     let (_, rest) = rest.split_once("](super::")?;
     Some(rest.split_once(')')?.0)
 }
 
-/// A command of cargo: what it does, its packages and targets, and whether it is of the whole workspace.
+/// A command of cargo: its subcommand, its packages and targets, and whether it is for the whole workspace.
 struct Cargo<'t> {
     verb: &'t str,
     flags: Vec<(&'t str, &'t str)>,
@@ -228,7 +230,7 @@ impl<'t> Cargo<'t> {
         Some(Self { verb, flags: pairs.map(|pair| (pair[0], pair[1])).collect(), is_workspace })
     }
 
-    /// Whether whoever runs this has run that, too; `lock` has the names of the packages.
+    /// Whether this command includes the other one; `lock` has the names of the packages.
     fn has_run(&self, other: &Self, lock: &str) -> bool {
         let all = |(flag, value): &(&str, &str)| match *flag {
             "-p" => self.is_workspace && lock.contains(&format!("name = \"{value}\"\n")),
@@ -264,14 +266,15 @@ fn a_command_is_run_by_one_of_its_packages_and_targets() {
     }
 }
 
-/// The examples' page says that continuous integration runs its commands and those of README, but for those of a list.
+/// Continuous integration runs the commands of README and of the examples' page, but for those that the page lists as
+/// long.
 #[test]
 fn commands_of_readme_are_run_or_said_to_be_long() {
     let Some(root) = root() else { return };
     let [readme, examples] =
         ["README.md", "examples/README.md"].map(|page| fs::read_to_string(root.join(page)).unwrap());
     let lock = fs::read_to_string(root.join("Cargo.lock")).unwrap();
-    // What the script calls `built` is an example of the workspace, which is built and run.
+    // Calls of `built` in the script are examples of the workspace, which are built and run.
     let script = fs::read_to_string(root.join(".ci/run")).unwrap();
     let script: Vec<String> =
         script.lines().map(|line| line.replacen("built ", "cargo run --workspace --example ", 1)).collect();

@@ -1,4 +1,4 @@
-//! Steps of different lengths: one beside the others, those of a clock, and those of a density.
+//! Steps of different lengths: single ones, those of a clock, and those of a density.
 
 use core::f64::consts::TAU;
 
@@ -17,7 +17,7 @@ fn disc() -> NonstandardInertia {
     NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap()
 }
 
-/// A top that makes loops.
+/// A top whose tip makes loops.
 fn top() -> (Top, SO3, Vector3<f64>) {
     let top = RigidBody { J_d: disc() } + Gravity { m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
     (top, SO3::from_euler_angles(0.8, 0.1, 0.0), Vector3::new(0.5, 2.0, 12.0))
@@ -25,7 +25,7 @@ fn top() -> (Top, SO3, Vector3<f64>) {
 
 type Top = Sum<RigidBody, Gravity>;
 
-/// A body of several.
+/// A rigid body with its weight, one of several.
 #[lagrangian(
     group(F = SO3, d = R3),
     advected(x = d.seen_from(space)),
@@ -40,7 +40,7 @@ struct FallingBody {
     up: Vector3<f64>,
 }
 
-/// What points of two do to each other, as two unit masses there.
+/// The attraction between points of two bodies, as of unit masses there.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
@@ -52,7 +52,7 @@ struct Attraction {
     b: Vector3<f64>,
 }
 
-/// How far apart two motions are.
+/// The distance of two motions.
 fn apart<G: LieGroup<Scalar = f64>, A: Advected<G>>(a: &At<G, A>, b: &At<G, A>) -> f64 {
     let [a, b] = [a, b].map(|motion| {
         let mut all = Vec::new();
@@ -63,8 +63,8 @@ fn apart<G: LieGroup<Scalar = f64>, A: Advected<G>>(a: &At<G, A>, b: &At<G, A>) 
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// A step of the length `h` is the step, one of another length that of another stepper, a clock makes the steps of its
-/// lengths, and a reversed clock comes back, as `−h` does.
+/// Checks that `step_of` makes the steps of a stepper of that length, a clock the steps of its lengths, and that a
+/// reversed clock returns to the start, as `−h` does.
 fn assert_varies<S, P>(name: &str, make: impl Fn(f64) -> Stepper<S, P>, start: liestep::StateOf<S, P>)
 where
     S: Effect<Scalar = f64>,
@@ -130,7 +130,8 @@ fn any_method_varies() {
     assert_varies("chain", |h| chain.stepper(h).unwrap(), start.unwrap());
 }
 
-/// Steps beside the counted ones and those of a clock, as they are recorded, read between steps, and kept.
+/// The time of a motion is the sum of the lengths, for single steps and those of a clock, in records, between steps,
+/// and in checkpoints.
 #[test]
 fn time_is_that_of_the_lengths() {
     let (scene, attitude, velocity) = top();
@@ -163,7 +164,7 @@ fn time_is_that_of_the_lengths() {
     }
     assert!(seen.iter().all(|(_, motion)| motion.momentum().x.abs() < 1e-13));
     assert!(timed.length(&start).unwrap() < 0.01);
-    // An end of a step is a part of length one, and the one before is a step back.
+    // The end of a step is a part of length one, and the state before it is a step back.
     let next = timed.steps(state).next().unwrap().unwrap();
     assert!(apart(&timed.part(&state, 1.0).unwrap(), &next) < 1e-12);
     assert!(apart(&timed.part(&next, -1.0).unwrap(), &state) < 1e-12);
@@ -202,7 +203,7 @@ fn a_clock_has_an_end() {
         let clock = Clock::orbit(0.9, 7.0, steps).unwrap();
         assert_eq!(clock.reversed(u64::from(steps)).unwrap(), clock);
     }
-    // From apocentre it is half a round on.
+    // The clock that begins at apocentre is half a round ahead.
     let [near, far] = [0.0, 0.5 * TAU].map(|mean| {
         let timed = Stepper::new(scene, 1.0).unwrap().with_clock(Clock::orbit_from(mean, 0.7, 1.0, 400).unwrap());
         (0..=400).map(|step| timed.plan().counted(step)).collect::<Vec<_>>()
@@ -211,7 +212,7 @@ fn a_clock_has_an_end() {
     assert!(Clock::orbit_from(f64::NAN, 0.5, 1.0, 10).is_err());
 }
 
-/// How far the momentum in space is off after steps of very different lengths, plain ones and with compensated sums.
+/// The errors of the momentum in space after steps of very different lengths, with plain and with compensated sums.
 fn momenta(steps: u64) -> [f64; 2] {
     fn kept<S: Effect<Scalar = f64, Group = SO3> + LeftInvariant, P: Plan<S> + Variable>(
         (stepper, steps): (Stepper<S, P>, u64),
@@ -243,7 +244,7 @@ fn momenta_over_ten_million_steps() {
     assert!(plain < 3e-12 && compensated < 1e-13);
 }
 
-/// Eccentric anomaly at a mean one, by bisection.
+/// The eccentric anomaly at a mean anomaly, by bisection.
 fn kepler(mean: f64, e: f64) -> f64 {
     let halved = |(low, high): (f64, f64), _| {
         let middle = 0.5 * (low + high);
@@ -252,22 +253,22 @@ fn kepler(mean: f64, e: f64) -> f64 {
     (0..60).fold((mean - 1.0, mean + 1.0), halved).0
 }
 
-/// Distance and true anomaly at an eccentric one.
+/// The distance and the true anomaly at an eccentric anomaly.
 fn place(anomaly: f64, e: f64) -> (f64, f64) {
     let half = 0.5 * anomaly;
     let turned = ((1.0 + e).sqrt() * half.sin()).atan2((1.0 - e).sqrt() * half.cos());
     (1.0 - e * anomaly.cos(), 2.0 * turned)
 }
 
-/// A kick in the middle of the step, where the planet is known.
+/// The leapfrog has its kick in the middle of the step, where the direction to the planet is known.
 const LEAPFROG: SplittingScheme = SplittingScheme::new("leapfrog", 2, Flow::Drift, &[0.5, 1.0]);
 
-/// Pitch and its rate after some orbits by steps of a splitting, this many an orbit: those of a clock, and equal ones. The
-/// satellite begins with 0.3 rad and 1 rad/s at an eccentric anomaly.
+/// Pitch and its rate after some orbits by this many steps of a splitting in each: by those of a clock, and by equal
+/// ones. The satellite begins with 0.3 rad and 1 rad/s at an eccentric anomaly.
 fn satellite([e, K, begin]: [f64; 3], orbits: u32, steps: u32) -> [[f64; 2]; 2] {
     let J = Inertia::from_principal_moments(Vector3::new(0.8 - 0.5 * K, 0.8 + 0.5 * K, 1.0)).unwrap();
     let mean = begin - e * begin.sin();
-    // The direction of the planet times r^{-3/2}, so that all of its strength is in it.
+    // The direction to the planet times r^{-3/2}, which is the strength of the gradient.
     let planet = move |t: f64| {
         let (r, nu) = place(kepler((t + mean) % TAU, e), e);
         Vector3::new(nu.cos(), nu.sin(), 0.0) * r.powf(-1.5)
@@ -284,7 +285,7 @@ fn satellite([e, K, begin]: [f64; 3], orbits: u32, steps: u32) -> [[f64; 2]; 2] 
     })
 }
 
-/// Beletsky's equation by Runge and Kutta, in the eccentric anomaly: pitch and its rate.
+/// Beletsky's equation in the eccentric anomaly by a Runge–Kutta method: pitch and its rate.
 fn beletsky([e, K, begin]: [f64; 3], orbits: u32) -> [f64; 2] {
     let rate = |y: [f64; 2], anomaly: f64| {
         let (r, nu) = place(anomaly, e);
@@ -323,11 +324,11 @@ fn what_a_clock_is_worth() {
     worth([0.9, 0.6, 0.0], 5);
     assert!(worth([0.7, 0.05, 0.0], 2)[1..].iter().all(|&ratio| ratio > 150.0));
     assert!(worth([0.9, 0.05, 0.0], 2)[1..].iter().all(|&ratio| ratio > 300.0));
-    // Begun elsewhere equal steps have passes of pericentre as a whole, the errors of which cancel.
+    // The errors of equal steps cancel over a whole pass of pericentre, if the motion begins elsewhere.
     for begin in [0.25 * TAU, 0.5 * TAU] {
         assert!(worth([0.7, 0.05, begin], 2).iter().all(|&ratio| ratio < 1.0));
     }
-    // Where the orbit is nearly round, and in chaos, it is worth little or less than nothing.
+    // A clock gains little or nothing if the orbit is nearly round, or the motion chaotic.
     assert!(worth([0.3, 0.05, 0.0], 2).iter().all(|&ratio| ratio < 3.0));
     assert!(worth([0.3, 0.6, 0.0], 5).iter().all(|&ratio| ratio < 1.0));
     assert!(worth([0.7, 0.6, 0.0], 5).iter().all(|&ratio| ratio < 10.0));
@@ -337,8 +338,8 @@ fn what_a_clock_is_worth() {
     }
 }
 
-/// The mean error of the energy, over the energy, in each tenth of a motion in which the axis of a symmetric top passes
-/// the vertical so often, by steps in which it turns by about as much.
+/// The mean relative error of the energy in each tenth of a motion in which the axis of a symmetric top passes the
+/// vertical so often, by steps in which it turns by about the same angle.
 fn over_the_pole(h: f64, passes: u32) -> [f64; 10] {
     let (top, ..) = top();
     let stepper = Stepper::new(top, h).unwrap().with_density(densities::turn(top, 1.0));
@@ -376,7 +377,7 @@ fn a_density_over_the_pole_a_million_times() {
     assert!(tenths.iter().all(|tenth| (tenth - mean).abs() < 1e-5), "{tenths:?}");
 }
 
-/// It is that of `½ ln(|Ω|² + ω²)` along the motion: by short steps ahead and back.
+/// The rate of the density `turn` is that of `½ ln(|Ω|² + ω²)` along the motion: by short steps ahead and back.
 #[test]
 fn the_rate_of_a_density_is_that_of_the_motion() {
     let (Sum { second: gravity, .. }, attitude, velocity) = top();
@@ -405,18 +406,18 @@ fn a_density_comes_back() {
     stepper.inverse().unwrap().run(&mut state, 10_000).unwrap();
     println!("back to {:.1e}, at {:.1e} s", apart(&state, &start), stepper.time(&state));
     assert!(apart(&state, &start) < 1e-10 && stepper.time(&state).abs() < 1e-10);
-    // A density that falls below zero has no step.
+    // A density that falls below zero has no step length, which is an error.
     let falling = Stepper::new(top, 0.02).unwrap().with_density(|_, _| -1e3);
     let mut state = falling.start(SO3::identity(), Vector3::x()).unwrap();
     assert!(matches!(falling.step(&mut state), Err(StepError::NoLength { .. })) && state.steps() == 0);
 }
 
-/// Two bodies that pass each other at a thousandth of their distance, a hundred times.
+/// Two bodies pass each other at a thousandth of their distance, a hundred times.
 #[test]
 fn a_close_pass_with_a_density() {
     let body = FallingBody { m: 1.0, J_d: disc(), g: 0.0, up: Vector3::z() };
     let scene = Each::<2>::of([body; 2]) + Pairs::<2>::of([Attraction { a: Vector3::zeros(), b: Vector3::zeros() }]);
-    // At the far end of an orbit with pericentre 0.001.
+    // The bodies start at the far end of an orbit with pericentre 0.001.
     let far = |x: f64| (SO3::identity(), R3::from(Vector3::x() * x));
     let mut velocity = [Vector6::zeros(); 2];
     velocity[1][4] = 0.5 * (2.0 * 0.001 / 1.999_f64).sqrt();

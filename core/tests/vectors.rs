@@ -1,4 +1,5 @@
-//! Several bodies in lanes move as each alone, to the bit, by the vector instructions that the machine is found to have.
+//! Several bodies in lanes have the bits of each body alone, by the vector instructions that are detected on the
+//! machine.
 //!
 //! Only builds without debug assertions ask for these: `cargo test --release -p liestep --lib --test vectors`.
 
@@ -15,19 +16,19 @@ use simba::simd::{AutoF64x8, WideF64x4};
 
 type Top<T> = Sum<PrincipalBody<T>, Gravity<T>>;
 
-/// Asymmetric, its centre of mass on none of its axes.
+/// An asymmetric top with its centre of mass on none of its axes.
 fn top() -> Top<f64> {
     let J_d = DiagonalNonstandardInertia::from_principal_moments(Vector3::new(1.6, 2.6, 3.0)).unwrap();
     PrincipalBody { J_d } + Gravity { m: 1.0, g: 9.81, rho: Vector3::new(0.1, 0.2, 0.3), up: Vector3::z() }
 }
 
-/// Where the top of a lane starts: each leans and spins otherwise.
+/// The start of the top of a lane: each leans and spins differently.
 fn start(lane: usize) -> (SO3, Vector3<f64>) {
     let k = lane as f64;
     (SO3::from_euler_angles(0.3 * k, 1.0 - 0.2 * k, 0.1), Vector3::new(0.5, 0.4 * k - 1.0, 3.0 + k))
 }
 
-/// Steps the tops of all lanes together, and each of them alone.
+/// Compares steps of the tops of all lanes together with steps of each alone.
 fn assert_independent<T, P, Q>(together: &Stepper<Top<T>, P>, alone: &Stepper<Top<f64>, Q>)
 where
     T: Real<Element = f64>,

@@ -9,7 +9,7 @@ use liestep_refinement::Effort;
 use workbench::table::{aligned, number};
 
 use crate::measure::ladder;
-use crate::methods::{self, Prepared};
+use crate::methods::{self, PreparedRun};
 use crate::report::microseconds;
 use crate::scenes::{Kind, Scene, error};
 
@@ -36,7 +36,7 @@ struct Answer {
     name: String,
     step: f64,
     trials: f64,
-    run: Prepared,
+    run: PreparedRun,
 }
 
 impl Answer {

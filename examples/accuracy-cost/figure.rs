@@ -4,12 +4,12 @@ use plotters::prelude::*;
 use workbench::plot::{Area, BLUE, GREEN, ORANGE, PURPLE, PlotResult, heading, legend, px, render};
 
 use crate::methods::Family;
-use crate::report::Measured;
+use crate::report::MethodRuns;
 
 /// The runs of one scene over one time.
 pub struct Panel<'a> {
     pub title: String,
-    pub methods: &'a [Measured],
+    pub methods: &'a [MethodRuns],
 }
 
 /// The colour of methods without one of their own.
@@ -38,7 +38,7 @@ enum Kind {
     Collocation,
 }
 
-fn kind(method: &Measured) -> Kind {
+fn kind(method: &MethodRuns) -> Kind {
     let name = method.name.as_str();
     let is_flow = name.starts_with("K6,") && name != "K6, Suzuki 8";
     match name {
@@ -99,7 +99,7 @@ impl Panel<'_> {
 }
 
 /// The runs of a family that no other of its runs beats both in error and in cost, by cost.
-fn envelope<'a>(methods: impl Iterator<Item = &'a Measured>) -> Vec<(f64, f64)> {
+fn envelope<'a>(methods: impl Iterator<Item = &'a MethodRuns>) -> Vec<(f64, f64)> {
     let mut runs: Vec<_> = methods.flat_map(costs).collect();
     runs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut best = f64::INFINITY;
@@ -112,6 +112,6 @@ fn envelope<'a>(methods: impl Iterator<Item = &'a Measured>) -> Vec<(f64, f64)> 
 }
 
 /// The time in µs and the error of each run.
-fn costs(method: &Measured) -> impl Iterator<Item = (f64, f64)> + '_ {
+fn costs(method: &MethodRuns) -> impl Iterator<Item = (f64, f64)> + '_ {
     method.runs.rows().iter().filter_map(|run| Some((run.seconds? * 1e6, run.error)))
 }

@@ -23,7 +23,7 @@ use std::time::Duration;
 
 use accuracy_cost::figure::{Panel, figure};
 use accuracy_cost::measure::ladder;
-use accuracy_cost::report::Measured;
+use accuracy_cost::report::MethodRuns;
 use accuracy_cost::scenes::Scene;
 use accuracy_cost::{methods, report};
 use liestep_refinement::Effort;
@@ -124,7 +124,7 @@ fn compare(arguments: &Arguments) -> Result<(), Failure> {
             let mut measured = Vec::new();
             for method in &methods {
                 progress.add(0, &format!("{}, {}", scene.name, method.name));
-                measured.push(Measured::new(method, ladder(method, scene, t, effort(t))));
+                measured.push(MethodRuns::new(method, ladder(method, scene, t, effort(t))));
                 progress.add(1, &format!("{}, {}", scene.name, method.name));
             }
             let title = format!("{}, {t} s", scene.name);

@@ -8,18 +8,18 @@ use liestep::prelude::*;
 use workbench::top_equations::rk4_step;
 
 use crate::rivals::dop853::Dop853;
-use crate::rivals::embedded::{self, Embedded};
+use crate::rivals::embedded::{self, EmbeddedMethod};
 use crate::rivals::rates::Rates;
 use crate::rivals::tsitouras::Tsitouras5;
 use crate::rivals::verner::Verner9;
 use crate::scenes::{Kind, Scene};
 
 /// A prepared run, from its start to its end each time it is called; `None` if a step failed.
-pub type Prepared = Box<dyn Fn() -> Option<End>>;
+pub type PreparedRun = Box<dyn Fn() -> Option<End>>;
 
 /// Prepares the run of a scene over a time with a step or a tolerance. Everything independent of the state is computed
 /// here.
-type Prepare = Box<dyn Fn(&Scene, f64, f64) -> Option<Prepared>>;
+type Prepare = Box<dyn Fn(&Scene, f64, f64) -> Option<PreparedRun>>;
 
 /// A method of integration.
 pub struct Method {
@@ -32,7 +32,7 @@ pub struct Method {
 /// The family of a method, by the structure that it preserves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// The Poisson structure and the momentum maps.
+    /// Methods that conserve the Poisson structure and the momentum maps.
     Poisson,
     /// No structure: an explicit Runge–Kutta method.
     Rival,
@@ -52,7 +52,7 @@ impl Method {
         name: impl Into<String>,
         family: Family,
         control: Control,
-        prepare: impl Fn(&Scene, f64, f64) -> Option<Prepared> + 'static,
+        prepare: impl Fn(&Scene, f64, f64) -> Option<PreparedRun> + 'static,
     ) -> Self {
         Self { name: name.into(), family, control, prepare: Box::new(prepare) }
     }
@@ -235,7 +235,7 @@ fn rivals<E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> Vec<Met
 }
 
 /// An embedded method, with a fixed step and with its own step control.
-fn embedded<M: Embedded, E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> [Method; 2] {
+fn embedded<M: EmbeddedMethod, E: Rates>(equations: impl Fn(&Scene) -> E + Copy + 'static) -> [Method; 2] {
     [
         Method::new(format!("{}, fixed step", M::NAME), Family::Rival, Control::Step(1.0), move |scene, t, h| {
             let (equations, start, steps) = (equations(scene), scene.start(), count(t, h));

@@ -12,13 +12,13 @@ use crate::methods::{Family, Method};
 pub const ERRORS: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 
 /// A method and its measured runs.
-pub struct Measured {
+pub struct MethodRuns {
     pub name: String,
     pub family: Family,
     pub runs: Refinement,
 }
 
-impl Measured {
+impl MethodRuns {
     pub fn new(method: &Method, runs: Refinement) -> Self {
         Self { name: method.name.clone(), family: method.family, runs }
     }
@@ -30,7 +30,7 @@ impl Measured {
 }
 
 /// The cheapest of a family for an error, and its cost, s.
-fn cheapest(methods: &[Measured], family: Family, error: f64) -> Option<(&str, f64)> {
+fn cheapest(methods: &[MethodRuns], family: Family, error: f64) -> Option<(&str, f64)> {
     let costs = methods.iter().filter(|method| method.family == family);
     costs.filter_map(|method| Some((method.name.as_str(), method.cost(error)?))).min_by(|a, b| a.1.total_cmp(&b.1))
 }
@@ -42,7 +42,7 @@ pub(crate) fn microseconds(cost: f64) -> String {
 }
 
 /// Microseconds to each error, a method a row.
-pub fn costs(methods: &[Measured]) -> String {
+pub fn costs(methods: &[MethodRuns]) -> String {
     let heading = core::iter::once("µs to an error of".to_owned()).chain(ERRORS.map(|error| format!("{error:.0e}")));
     let mut rows = vec![heading.collect::<Vec<_>>()];
     for method in methods {
@@ -53,7 +53,7 @@ pub fn costs(methods: &[Measured]) -> String {
 }
 
 /// The cheapest of our methods for each error, beside the cheapest rival.
-pub fn best(methods: &[Measured]) -> String {
+pub fn best(methods: &[MethodRuns]) -> String {
     let mut rows = vec![["error", "Poisson", "µs", "best rival", "µs", "ratio"].map(str::to_owned).to_vec()];
     for error in ERRORS {
         let (ours, rival) = (cheapest(methods, Family::Poisson, error), cheapest(methods, Family::Rival, error));
@@ -69,7 +69,7 @@ pub fn best(methods: &[Measured]) -> String {
 }
 
 /// The table of the examples' page: our cheapest Poisson method's time as a multiple of the fastest rival's, a scene a row.
-pub fn ratios(results: &[(String, Vec<Measured>)]) -> String {
+pub fn ratios(results: &[(String, Vec<MethodRuns>)]) -> String {
     let errors = ERRORS.map(|error| format!("{error:.0e}")).join(" | ");
     let mut text = format!("| error of attitude and velocity | {errors} |\n|---|---|---|---|---|---|---|\n");
     for (title, methods) in results {
@@ -108,8 +108,8 @@ pub struct Data(String);
 
 impl Data {
     /// Adds the runs of a scene over a time, s.
-    pub fn add(&mut self, scene: &str, t: f64, methods: &[Measured]) {
-        for Measured { name, runs, .. } in methods {
+    pub fn add(&mut self, scene: &str, t: f64, methods: &[MethodRuns]) {
+        for MethodRuns { name, runs, .. } in methods {
             let name = name.replace(',', " +");
             for line in runs.to_csv().lines().skip(1) {
                 // Writing to a string can't fail.

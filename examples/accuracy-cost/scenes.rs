@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 use workbench::measure::relative;
 use workbench::top_equations::{Equations, State};
 
-use crate::rivals::rates::{Orbiting, Sprung};
+use crate::rivals::rates::{SatelliteRates, SpringRates};
 
 /// A body, its initial state, and its exact later states.
 pub struct Scene {
@@ -75,9 +75,9 @@ impl Scene {
         self.body() + Gravity { m, g, rho, up } + SPRING
     }
 
-    pub fn sprung_equations(&self) -> Sprung {
+    pub fn sprung_equations(&self) -> SpringRates {
         let Spring { k, length, at, anchor } = SPRING;
-        Sprung { top: self.equations(), k, length, at: at.into(), anchor: anchor.into() }
+        SpringRates { top: self.equations(), k, length, at: at.into(), anchor: anchor.into() }
     }
 
     /// The satellite, in a field with `GM/r³ = 1`.
@@ -85,9 +85,9 @@ impl Scene {
         self.body() + GravityGradient { GM: 1.0, r: 1.0, J: self.inertia(), direction: Vector3::z() }
     }
 
-    pub fn satellite_equations(&self) -> Orbiting {
+    pub fn satellite_equations(&self) -> SatelliteRates {
         let moments = self.motion.top.moments();
-        Orbiting { moments: moments.into(), inverse_moments: moments.map(f64::recip).into(), gradient: 3.0 }
+        SatelliteRates { moments: moments.into(), inverse_moments: moments.map(f64::recip).into(), gradient: 3.0 }
     }
 
     /// The equations in the variables of the rivals.

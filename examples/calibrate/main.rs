@@ -44,7 +44,7 @@ const BEGINNINGS: [usize; 3] = [100, 250, 500];
 
 /// A scene with a body in its principal axes.
 type Top = Sum<PrincipalBody, Gravity>;
-type Fitted = Fit<Stepper<Top, Composition<Top>>>;
+type TopFit = Fit<Stepper<Top, Composition<Top>>>;
 
 const HELP: &str = "Fits the inertia of a top to the readings of a gyroscope
 
@@ -100,7 +100,7 @@ impl Reference {
     /// The fit of readings from this guess: of the logarithms of `J_d`, of the first `coordinates` coordinates of the
     /// centre of mass, and of the initial state. With all three coordinates the scale would be undetermined; the last
     /// is measured with a ruler.
-    fn fit(&self, readings: &[Vector3<f64>], coordinates: usize) -> Result<Fitted, Failure> {
+    fn fit(&self, readings: &[Vector3<f64>], coordinates: usize) -> Result<TopFit, Failure> {
         let of = |numbers: &[f64]| Self {
             moments: self.moments.component_mul(&Vector3::from_fn(|k, _| numbers[k].exp())),
             rho: Vector3::from_fn(|k, _| numbers.get(3 + k).copied().unwrap_or(self.rho[k])),
@@ -121,7 +121,7 @@ impl Reference {
     }
 
     /// The top with the fitted values.
-    fn with(&self, fit: &Fitted) -> Self {
+    fn with(&self, fit: &TopFit) -> Self {
         let first = &fit.states[0];
         let rho = Vector3::from_fn(|k, _| fit.constants.get(3 + k).copied().unwrap_or(self.rho[k]));
         let moments = self.moments.component_mul(&Vector3::from_fn(|k, _| fit.constants[k].exp()));
@@ -153,7 +153,7 @@ fn measured(count: usize, seed: u64) -> Result<Vec<Vector3<f64>>, Failure> {
 
 /// The fit of all readings, from a guess with errors of 15 % in every moment and in the centre of mass, and of some
 /// degrees in the attitude; the guess of the momentum comes from the first reading.
-fn fitted(readings: &[Vector3<f64>]) -> Result<(Reference, Fitted), Failure> {
+fn fitted(readings: &[Vector3<f64>]) -> Result<(Reference, TopFit), Failure> {
     let truth = truth();
     let moments = truth.moments.component_mul(&Vector3::new(0.15, -0.15, 0.15).map(f64::exp));
     let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.05, -0.05, 0.05));
@@ -174,12 +174,12 @@ fn fitted(readings: &[Vector3<f64>]) -> Result<(Reference, Fitted), Failure> {
 }
 
 /// The standard deviations of three logarithms and of two coordinates of the centre of mass.
-fn deviations(fit: &Fitted) -> [f64; 5] {
+fn deviations(fit: &TopFit) -> [f64; 5] {
     core::array::from_fn(|k| fit.covariance[(6 + k, 6 + k)].sqrt())
 }
 
 /// The errors of a fit, in its standard deviations.
-fn errors((found, fit): &(Reference, Fitted)) -> [f64; 5] {
+fn errors((found, fit): &(Reference, TopFit)) -> [f64; 5] {
     let (truth, deviations) = (truth(), deviations(fit));
     let moments = found.moments.component_div(&truth.moments).map(f64::ln);
     let rho = found.rho - truth.rho;
@@ -188,7 +188,7 @@ fn errors((found, fit): &(Reference, Fitted)) -> [f64; 5] {
 }
 
 /// The root mean square of the errors, the largest, the number above three, and the number of all.
-fn spread(fits: &[(Reference, Fitted)]) -> (f64, f64, usize, usize) {
+fn spread(fits: &[(Reference, TopFit)]) -> (f64, f64, usize, usize) {
     let all: Vec<f64> = fits.iter().flat_map(errors).map(f64::abs).collect();
     let spread = (all.iter().map(|error| error * error).sum::<f64>() / all.len() as f64).sqrt();
     (spread, all.iter().copied().fold(0.0, f64::max), all.iter().filter(|error| **error > 3.0).count(), all.len())
@@ -230,7 +230,7 @@ fn main() -> ExitCode {
     })
 }
 
-fn table(fits: &[(Reference, Fitted)]) -> Result<String, Failure> {
+fn table(fits: &[(Reference, TopFit)]) -> Result<String, Failure> {
     let mut text = "\nthe third coordinate of the centre of mass measured with a ruler\n".to_owned();
     let names = ["J1", "J2", "J3", "rho 1", "rho 2", "rms"].map(|name| format!("{name:>10}")).concat();
     writeln!(text, "{:<8}{names}{:>14}", "seed", "furthest off")?;
@@ -252,7 +252,7 @@ fn table(fits: &[(Reference, Fitted)]) -> Result<String, Failure> {
 }
 
 /// The root mean square of the residuals, rad/s.
-fn rms(fit: &Fitted) -> f64 {
+fn rms(fit: &TopFit) -> f64 {
     NOISE * (fit.squares / (3.0 * fit.states.len() as f64)).sqrt()
 }
 

@@ -6,12 +6,12 @@ use workbench::plot::{
     BLUE, GREEN, Line, ORANGE, PURPLE, Panel, PlotResult, SKY, Vertical, YELLOW, heading, legend, px, render,
 };
 
-use crate::{Fitted, READINGS, Reference, STEP, deviations, measured, truth};
+use crate::{READINGS, Reference, STEP, TopFit, deviations, measured, truth};
 
 /// The part of the record in the picture, s: more would overlap.
 const SHOWN: f64 = 4.0;
 
-pub(crate) fn picture(fits: &[(Reference, Fitted)]) -> Result<String, Failure> {
+pub(crate) fn picture(fits: &[(Reference, TopFit)]) -> Result<String, Failure> {
     let first = fits.first().ok_or("no fit to draw")?;
     let (read, fitted) = (measured(READINGS, 1)?, first.0.readings(READINGS)?);
     let rates = |values: &[Vector3<f64>], component: usize| -> Vec<(f64, f64)> {

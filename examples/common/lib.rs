@@ -3,7 +3,7 @@
 //!
 //! Code for the longer examples and the tests alone is in other packages, so that the first example builds fast.
 
-// This library is for this repository alone.
+// Public items need no full documentation, as only this repository uses them.
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 

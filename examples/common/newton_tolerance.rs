@@ -34,7 +34,7 @@ pub enum Form {
 
 /// The drifts of a run.
 #[derive(Default)]
-pub struct Left {
+pub struct Drifts {
     /// The relative drift of the energy's mean, between the first and the last tenth of the run.
     pub energy: f64,
     /// The relative drifts of `p·w` and of `p_3`.
@@ -56,13 +56,13 @@ pub fn run<L>(
     (guess, tolerance): (Guess, f64),
     form: Form,
     steps: u64,
-) -> Left
+) -> Drifts
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
 {
     let constants = lagrangian.constants(h);
     let (energy_before, vertical, axial) = (energy(lagrangian, &momentum, &w), momentum.dot(&w), momentum.z);
-    let mut left = Left::default();
+    let mut left = Drifts::default();
     let mut energies = Tenths::new(steps);
     let (mut before, mut last) = (Vector3::zeros(), Vector3::zeros());
     let mut spent = 0;
@@ -100,13 +100,13 @@ where
 }
 
 /// A run of as many of the library's own steps.
-pub fn by_the_library<L>(stepper: &Stepper<L>, mut state: StateOf<L>, steps: u64) -> Result<Left, StepError>
+pub fn by_the_library<L>(stepper: &Stepper<L>, mut state: StateOf<L>, steps: u64) -> Result<Drifts, StepError>
 where
     L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>>,
 {
     let momenta = |state: &StateOf<L>| (state.momentum().dot(&state.advected()), state.momentum().z);
     let (start, (vertical, axial)) = (stepper.energy(&state), momenta(&state));
-    let (mut left, mut energies, mut iterations) = (Left::default(), Tenths::new(steps), 0);
+    let (mut left, mut energies, mut iterations) = (Drifts::default(), Tenths::new(steps), 0);
     for step in 1..=steps {
         iterations += u64::from(stepper.step(&mut state)?.iterations);
         energies.after(step, || stepper.energy(&state) - start);

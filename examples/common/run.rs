@@ -100,7 +100,7 @@ pub struct Sample {
 /// A method of integration.
 pub trait Method: Clone {
     /// Makes this number of steps, and returns the number of Newton iterations; zero for an explicit method.
-    fn advance(&mut self, steps: u64) -> Result<u64, Stopped>;
+    fn advance(&mut self, steps: u64) -> Result<u64, EarlyEnd>;
 
     /// The state as a sample, the same for all methods.
     fn sample(&self) -> Sample;
@@ -108,20 +108,20 @@ pub trait Method: Clone {
 
 /// A run that ended early.
 #[derive(Debug)]
-pub struct Stopped {
+pub struct EarlyEnd {
     /// The last time that was reached, s.
     pub time: f64,
     /// The error of the next step.
     pub cause: StepError,
 }
 
-impl fmt::Display for Stopped {
+impl fmt::Display for EarlyEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "the variational step failed at t = {} s: {}", short(self.time), self.cause)
     }
 }
 
-impl std::error::Error for Stopped {
+impl std::error::Error for EarlyEnd {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         Some(&self.cause)
     }
@@ -141,7 +141,7 @@ pub struct Record {
 const BLOCK: u64 = 1000;
 
 /// Runs a method to the end of the schedule.
-pub fn run<M: Method>(name: &str, mut method: M, schedule: &Schedule) -> Result<Record, Stopped> {
+pub fn run<M: Method>(name: &str, mut method: M, schedule: &Schedule) -> Result<Record, EarlyEnd> {
     let mut progress = Progress::new(schedule.steps);
     let mut samples = vec![(0.0, method.sample())];
     let (mut done, mut iterations, mut costs) = (0, 0, Vec::new());

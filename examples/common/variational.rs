@@ -3,7 +3,7 @@
 use liestep::mechanics::DiscreteLagrangian;
 use liestep::{SO3, StateOf, Stepper};
 
-use super::run::{Method, Sample, Stopped};
+use super::run::{EarlyEnd, Method, Sample};
 
 /// A motion with its stepper.
 pub struct Variational<'a, L: DiscreteLagrangian<Scalar = f64, Group = SO3>> {
@@ -18,12 +18,12 @@ impl<L: DiscreteLagrangian<Scalar = f64, Group = SO3>> Clone for Variational<'_,
 }
 
 impl<L: DiscreteLagrangian<Scalar = f64, Group = SO3>> Method for Variational<'_, L> {
-    fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
+    fn advance(&mut self, steps: u64) -> Result<u64, EarlyEnd> {
         let mut iterations = 0;
         for _ in 0..steps {
             match self.stepper.step(&mut self.state) {
                 Ok(report) => iterations += u64::from(report.iterations),
-                Err(cause) => return Err(Stopped { time: self.stepper.time(&self.state), cause }),
+                Err(cause) => return Err(EarlyEnd { time: self.stepper.time(&self.state), cause }),
             }
         }
         Ok(iterations)

@@ -15,7 +15,7 @@ use workbench::args::{Failure, Word, example};
 use workbench::output::print;
 
 /// A declaration in the list.
-struct Shown {
+struct Entry {
     name: &'static str,
     about: &'static str,
     derivation: &'static str,
@@ -23,16 +23,16 @@ struct Shown {
     is_self_adjoint: Option<bool>,
 }
 
-const fn shown<L: DiscreteLagrangian>(name: &'static str, about: &'static str) -> Shown {
-    Shown { name, about, derivation: L::DERIVATION, is_self_adjoint: Some(L::SELF_ADJOINT) }
+const fn shown<L: DiscreteLagrangian>(name: &'static str, about: &'static str) -> Entry {
+    Entry { name, about, derivation: L::DERIVATION, is_self_adjoint: Some(L::SELF_ADJOINT) }
 }
 
-const fn continuous<L: ContinuousLagrangian>(name: &'static str, about: &'static str) -> Shown {
-    Shown { name, about, derivation: L::CONTINUOUS_DERIVATION, is_self_adjoint: None }
+const fn continuous<L: ContinuousLagrangian>(name: &'static str, about: &'static str) -> Entry {
+    Entry { name, about, derivation: L::CONTINUOUS_DERIVATION, is_self_adjoint: None }
 }
 
 /// All declarations; a new one is one line.
-const LAGRANGIANS: [Shown; 21] = [
+const LAGRANGIANS: [Entry; 21] = [
     shown::<declarations::HeavyTop>("heavy-top", "(3.13) in principal axes: μ is (3.17), (L_F)* δl_d/δF is (3.18)"),
     shown::<declarations::ContinuousTop>("continuous-top", "l(Ω, w) of section 3.2, of which (3.13) is made"),
     shown::<declarations::FullTop>("full-top", "(3.13) with a full inertia tensor"),
@@ -78,7 +78,7 @@ fn main() -> ExitCode {
 }
 
 fn list() -> String {
-    let line = |Shown { name, about, is_self_adjoint, .. }: &Shown| {
+    let line = |Entry { name, about, is_self_adjoint, .. }: &Entry| {
         let adjoint = match is_self_adjoint {
             Some(true) => "self-adjoint",
             Some(false) => "–",
@@ -91,7 +91,7 @@ fn list() -> String {
 
 fn derivation(wanted: &str) -> Result<String, Failure> {
     let found = LAGRANGIANS.iter().find(|shown| shown.name == wanted);
-    let Shown { name, about, derivation, .. } = found.ok_or_else(|| {
+    let Entry { name, about, derivation, .. } = found.ok_or_else(|| {
         let names: Vec<_> = LAGRANGIANS.iter().map(|shown| shown.name).collect();
         format!("invalid value '{wanted}': it is none of {}", names.join(", "))
     })?;

@@ -1,6 +1,6 @@
 //! Declared systems, one per file, for examples of the derivation and for the tests.
 
-// This library is for this repository alone.
+// Public items need no full documentation, as only this repository uses them.
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 

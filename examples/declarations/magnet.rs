@@ -28,6 +28,6 @@ pub struct Magnet {
     pub Q: Matrix3<f64>,
     /// The field at the pivot, in space, T.
     pub field: Vector3<f64>,
-    /// Its gradient, in space, T/m.
+    /// Gradient of the field, in space, T/m.
     pub gradient: CovariantTensor<f64, 3>,
 }

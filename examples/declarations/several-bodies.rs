@@ -166,7 +166,7 @@ fn pushed(load: &SuspendedLoad, attitude: &SO3, x: Vector3<f64>, velocity: &SVec
     let r = attitude.as_matrix();
     let error = SO3::vee(&(axes.transpose() * r - r.transpose() * axes)) * 0.5;
     let torque = error * -0.8 - turning * 0.16;
-    // Rotors don't pull.
+    // The thrust isn't negative, as rotors don't pull.
     let thrust = r.column(2) * wanted.dot(&r.column(2)).max(0.0);
     SVector::from_fn(|k, _| match k {
         0..3 => torque[k],

@@ -28,7 +28,7 @@ pub struct SuspendedLoad {
     pub K: NonstandardInertia,
     /// Mass of the load, kg.
     pub m_load: f64,
-    /// From the flyer's centre of mass to the load's, in the axes of the load, m.
+    /// Vector from the flyer's centre of mass to the load's, in the axes of the load, m.
     pub cable: Vector3<f64>,
     /// Gravitational acceleration, m/s².
     pub g: f64,

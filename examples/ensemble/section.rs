@@ -88,7 +88,7 @@ pub(crate) fn crossings(ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<O
         let rows = shard.map_err(|fault| fault.to_string())?.rows;
         let first = found.len();
         found.extend(rows.columns[0].iter().map(|energy| Orbit { off: energy - ENERGY, points: Vec::new() }));
-        // Each member has one row.
+        // Each member has one row with all its crossings.
         for (place, row) in rows.crossings[0].row.iter().enumerate() {
             let [nutation, across] = [1, 2].map(|column| rows.crossings[0].columns[column][place]);
             found[first + row].points.push([nutation, across]);

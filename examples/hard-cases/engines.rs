@@ -6,7 +6,7 @@
 use liestep::effects::PrincipalBody;
 use liestep::mechanics::{Effect as _, Term as _};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use workbench::run::{Method, Sample, Stopped};
+use workbench::run::{EarlyEnd, Method, Sample};
 
 /// Principal moments, kg m², and their inverses.
 #[derive(Clone, Copy)]
@@ -66,7 +66,7 @@ pub(crate) struct Engine<U> {
 }
 
 impl<U: Fn(&Moments, &Vector3<f64>, f64) -> Vector3<f64> + Clone> Method for Engine<U> {
-    fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
+    fn advance(&mut self, steps: u64) -> Result<u64, EarlyEnd> {
         for _ in 0..steps {
             self.rates = (self.update)(&self.body, &self.rates, self.h);
             let turned = self.attitude * UnitQuaternion::from_scaled_axis(self.rates * self.h);

@@ -4,7 +4,7 @@ use declarations::{FreeBody, HeavyTop, Motion};
 use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::heavy_top::rk4::{Body, OnMatrix, OnQuaternion};
-use workbench::run::{Method, Sample, Stopped};
+use workbench::run::{EarlyEnd, Method, Sample};
 use workbench::variational::Variational;
 
 use crate::engines::{Engine, Moments, explicit, implicit, rescaled};
@@ -22,7 +22,7 @@ pub(crate) struct Spin {
 
 /// The conserved quantities of a free body, at one time.
 #[derive(Clone, Copy)]
-pub(crate) struct Kept {
+pub(crate) struct Invariants {
     pub(crate) energy: f64,
     pub(crate) spatial: Vector3<f64>,
     pub(crate) velocity: Vector3<f64>,
@@ -31,7 +31,7 @@ pub(crate) struct Kept {
 /// The run of a method, step by step.
 pub(crate) struct Trace {
     pub(crate) name: &'static str,
-    pub(crate) kept: Vec<Kept>,
+    pub(crate) kept: Vec<Invariants>,
 }
 
 impl Spin {
@@ -70,7 +70,7 @@ impl Spin {
         Ok(self.trace("full tensor", Variational { stepper: &stepper, state }, steps)?)
     }
 
-    fn trace(&self, name: &'static str, mut method: impl Method, steps: u64) -> Result<Trace, Stopped> {
+    fn trace(&self, name: &'static str, mut method: impl Method, steps: u64) -> Result<Trace, EarlyEnd> {
         let mut kept = vec![self.kept(&method.sample())];
         for _ in 0..steps {
             method.advance(1)?;
@@ -79,9 +79,9 @@ impl Spin {
         Ok(Trace { name, kept })
     }
 
-    fn kept(&self, Sample { attitude, momentum }: &Sample) -> Kept {
+    fn kept(&self, Sample { attitude, momentum }: &Sample) -> Invariants {
         let velocity = momentum.component_div(&self.moments());
-        Kept { energy: 0.5 * velocity.dot(momentum), spatial: attitude * momentum, velocity }
+        Invariants { energy: 0.5 * velocity.dot(momentum), spatial: attitude * momentum, velocity }
     }
 }
 
@@ -106,7 +106,7 @@ impl Trace {
         self.kept[self.kept.len() - 1].energy / self.kept[0].energy
     }
 
-    pub(crate) fn worst(&self, size: impl Fn(&Kept) -> f64) -> f64 {
+    pub(crate) fn worst(&self, size: impl Fn(&Invariants) -> f64) -> f64 {
         self.kept.iter().map(size).fold(0.0, workbench::measure::greater)
     }
 }

@@ -19,7 +19,7 @@ impl Effort {
         if self.verdict_only { 0 } else { steps }
     }
 
-    /// The default number of steps, or with `--long` the other.
+    /// The number of steps: `default`, or with the option `--long` the number `long`.
     pub fn steps(self, default: u64, long: u64) -> u64 {
         if self.long { long } else { default }
     }

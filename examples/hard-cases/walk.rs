@@ -34,13 +34,13 @@ pub(crate) struct Defects {
 ///
 /// Sampled `n` times, a walk reaches some four standard deviations at most, and a constant growth `√n`. The quantities
 /// are the six entries of `RRᵀ − I` (those of `RᵀR − I` turn with the body), `|w|²` and `p·w`.
-struct Followed {
+struct Growth {
     last: SVector<f64, 8>,
     squares: SVector<f64, 8>,
     farthest: SVector<f64, 8>,
 }
 
-impl Followed {
+impl Growth {
     fn new() -> Self {
         Self { last: SVector::zeros(), squares: SVector::zeros(), farthest: SVector::zeros() }
     }
@@ -64,7 +64,7 @@ const LOOKS: u64 = 1000;
 /// The defects of a run, and their growth.
 pub(crate) struct Walk {
     start: (f64, f64),
-    followed: Followed,
+    followed: Growth,
     /// The steps between two samples.
     stride: u64,
     pub(crate) worst: Defects,
@@ -78,7 +78,7 @@ impl Walk {
     pub(crate) fn from(momentum: &Vector3<f64>, w: &Vector3<f64>, steps: u64) -> Self {
         let start = (momentum.dot(w), momentum.z);
         let stride = (steps / LOOKS).next_multiple_of(SAMPLE);
-        Self { start, followed: Followed::new(), stride, worst: Defects::default() }
+        Self { start, followed: Growth::new(), stride, worst: Defects::default() }
     }
 
     /// Evaluates the defects after the step of this number, if it is one of the sampled steps.

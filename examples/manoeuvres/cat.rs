@@ -11,7 +11,7 @@ use workbench::args::Failure;
 use workbench::drawing::path;
 use workbench::plot::{BLUE, Line, ORANGE};
 
-use crate::{Drawn, Part, found, given, picture};
+use crate::{Drawing, Part, found, given, picture};
 
 /// A body with two wheels, whose angles about the body's first and second axis are `t_1` and `t_2`.
 #[lagrangian(
@@ -72,7 +72,7 @@ fn turn(angle: f64) -> Result<(Turn, f64), Failure> {
 }
 
 /// A turn by wheels whose final angles are the initial ones.
-pub(crate) fn cat() -> Drawn {
+pub(crate) fn cat() -> Drawing {
     let (plan, foretold) = turn(0.5)?;
     let momentum = |state: &liestep::StateOf<Cat>| {
         let attitude = state.attitude();

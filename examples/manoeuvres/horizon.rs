@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, Matrix3, SMatrix, SVector, UnitQuaternion, Vector3};
 use workbench::args::Failure;
 use workbench::plot::{BLUE, Line, Panel, VERMILION, Vertical};
 
-use crate::{Drawn, Part, picture};
+use crate::{Drawing, Part, picture};
 
 /// The time between two readings, s.
 const STEP: f64 = 0.1;
@@ -220,7 +220,7 @@ fn compared(seeds: u64) -> Result<Vec<[[f64; 2]; 2]>, Failure> {
 }
 
 /// The table and the picture.
-pub(crate) fn horizon() -> Drawn {
+pub(crate) fn horizon() -> Drawing {
     let seeds = 20;
     let errors = compared(seeds)?;
     let mut report = format!("root of the mean square over {seeds} seeds\n");

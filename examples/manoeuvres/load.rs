@@ -10,7 +10,7 @@ use nalgebra::{SVector, Vector3};
 use workbench::drawing::path;
 use workbench::plot::{BLUE, Line, ORANGE, PURPLE};
 
-use crate::{Drawn, Part, found, given, picture};
+use crate::{Drawing, Part, found, given, picture};
 
 /// A flyer of mass `m`, and a load of mass `m_load` on a cable that is always taut and turns with the load.
 #[lagrangian(
@@ -26,7 +26,7 @@ use crate::{Drawn, Part, found, given, picture};
     },
 )]
 #[derive(Clone, Debug)]
-pub(crate) struct Suspended {
+pub(crate) struct FlyerWithLoad {
     J_d: NonstandardInertia,
     m: f64,
     K: NonstandardInertia,
@@ -55,12 +55,12 @@ pub(crate) struct Rotors {
 }
 
 /// The plan that moves a load by two metres to the side and one up, from rest to rest.
-pub(crate) fn load() -> Drawn {
+pub(crate) fn load() -> Drawing {
     let (steps, seconds) = (100, 2.0);
     let body = |moments: [f64; 3]| NonstandardInertia::from_principal_moments(Vector3::from(moments));
     let (J_d, K, cable) = (body([0.02, 0.02, 0.035])?, body([0.002, 0.002, 0.001])?, Vector3::z() * -0.8);
     let rotors = Rotors { thrust: 1.4 * 9.81, acceleration: Vector3::zeros(), inertia: 0.02, axis: Vector3::z() };
-    let scene: Sum<Suspended, Rotors> = Suspended { J_d, m: 1.0, K, m_load: 0.4, cable, g: 9.81 } + rotors;
+    let scene: Sum<FlyerWithLoad, Rotors> = FlyerWithLoad { J_d, m: 1.0, K, m_load: 0.4, cable, g: 9.81 } + rotors;
     let stepper = Stepper::new(scene, seconds / f64::from(steps))?;
     let at = |place: Vector3<f64>| (SO3::identity(), R3::from(place), SO3::identity());
     let start = stepper.start(at(Vector3::zeros()), SVector::<f64, 9>::zeros())?;

@@ -41,9 +41,9 @@ Options:
 ";
 
 /// A report, and a picture.
-type Drawn = Result<(String, String), Failure>;
+type Drawing = Result<(String, String), Failure>;
 /// A manoeuvre with its name.
-type Manoeuvre = (&'static str, fn() -> Drawn);
+type Manoeuvre = (&'static str, fn() -> Drawing);
 const ALL: [Manoeuvre; 6] = [
     ("slew", slew::half_turn),
     ("sun", slew::sun),

@@ -10,7 +10,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use workbench::drawing::path;
 use workbench::plot::{BLUE, GREEN, Line, ORANGE, Path, VERMILION};
 
-use crate::{Drawn, Part, found, given, picture};
+use crate::{Drawing, Part, found, given, picture};
 
 fn turned(angles: [f64; 3]) -> SO3 {
     UnitQuaternion::from_scaled_axis(Vector3::from(angles)).into()
@@ -36,7 +36,7 @@ fn panel(step: f64, torques: &[[f64; 3]]) -> Part<'static> {
 }
 
 /// The shortest half turn, compared with that about its axis.
-pub(crate) fn half_turn() -> Drawn {
+pub(crate) fn half_turn() -> Drawing {
     let steps = 200;
     let J_d = NonstandardInertia::from_principal_moments(Vector3::repeat(1.0))?;
     let stepper = Stepper::new(RigidBody { J_d }, 3.5 / f64::from(steps))?;
@@ -76,7 +76,7 @@ pub(crate) fn half_turn() -> Drawn {
 }
 
 /// A turn past the sun.
-pub(crate) fn sun() -> Drawn {
+pub(crate) fn sun() -> Drawing {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5))?;
     let stepper = Stepper::new(RigidBody { J_d }, 0.02)?;
     let start = stepper.start(SO3::identity(), Vector3::zeros())?;
@@ -93,7 +93,7 @@ pub(crate) fn sun() -> Drawn {
 }
 
 /// A top is swung up.
-pub(crate) fn top() -> Drawn {
+pub(crate) fn top() -> Drawing {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.2, 1.2, 0.3))?;
     let gravity = Gravity { m: 1.0, g: 9.81, rho: Vector3::z() * 0.5, up: Vector3::z() };
     let stepper = Stepper::new(RigidBody { J_d } + gravity, 0.02)?;

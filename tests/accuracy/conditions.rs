@@ -1,4 +1,4 @@
-//! The coefficients satisfy all the order conditions, and not those of the next order.
+//! The coefficients of methods satisfy all order conditions of their order, and not those of the next.
 //!
 //! The step of a self-adjoint method is `exp(h A_1 + h³ A_3 + h⁵ A_5 + …)` with operators `A_k` that don't commute. A
 //! composition has the order `p` if the product of these at `γ_i h` agrees with `exp(h A_1)` in all words of the
@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use liestep::methods::{CompositionScheme, Flow, ProcessedScheme, SplittingScheme};
 use nalgebra::{DMatrix, DVector};
 
-/// The numbers of the coefficients.
+/// The scalars of coefficients and of series.
 pub(crate) trait Number:
     Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
@@ -141,8 +141,8 @@ fn times_shares(series: &Series<f64>, shares: impl Iterator<Item = Part>) -> Ser
     })
 }
 
-/// The distance of a splitting from `exp(A + B)` in the words of at most these numbers of letters, by their number of
-/// `B`.
+/// The largest difference of a splitting's coefficients of words in `A` and `B` from those of `exp(A + B)`; `longest` has
+/// the most letters of a word with one, two and more `B`.
 fn splitting_deviation(scheme: &SplittingScheme, longest: [usize; 3]) -> f64 {
     let one: Series<f64> = one(&[A, B], |word| match word.iter().filter(|letter| **letter == B).count() {
         0 => word.len() <= longest[0],

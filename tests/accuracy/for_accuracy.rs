@@ -66,7 +66,7 @@ fn worst_ratio(ask: impl Fn(&Motion, Accuracy) -> Answer, most_operations: f64) 
                     assert!(error <= tolerance, "{name} {horizon} {tolerance}: {error}\n{choice}");
                     worst = worst.max(error / tolerance);
                 }
-                // Errors of this motion have grown by 10⁹ until then.
+                // Errors of the asymmetric motion have grown by 10⁹ at that time.
                 Err(AccuracyError::Unreachable { floor, trials, .. }) => {
                     assert!(trials.operations < most_operations, "{name} {tolerance}: {trials:?}");
                     assert!(*name == "chaotic" && horizon > 50.0, "{name} {horizon} {tolerance}");
@@ -92,7 +92,7 @@ fn the_tolerance_is_reached_by_compositions_alone() {
     assert!(worst <= 1.0 && worst > 0.5, "{worst}");
 }
 
-/// For so short a motion, runs of one and two steps may agree by chance although both are wrong. Four of these 600
+/// In so short a motion runs of one and two steps may agree by chance although both are wrong. Four of these 600
 /// choices are of this kind.
 #[test]
 fn the_tolerance_is_seldom_missed_by_a_few_long_steps() {
@@ -229,7 +229,7 @@ fn the_same_question_has_the_same_answer() {
     let [one, other] = [ask(), ask()];
     assert_eq!(one.choice(), other.choice());
     assert_eq!(end(&one), end(&other));
-    // Single steps give the same motion, to rounding.
+    // Single steps of the chosen stepper give the same motion, to rounding.
     let mut state = one.start();
     while state.steps() < one.choice().steps {
         one.step(&mut state).unwrap();

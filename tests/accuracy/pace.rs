@@ -24,7 +24,7 @@ fn rewritten(body: &Needle, F: &Matrix3<f64>, w: &Vector3<f64>, h: f64) -> f64 {
     kinetic + 0.5 * step * (1.0 / body.gap(w) + 1.0 / body.gap(&next)) + step * body.energy
 }
 
-/// The derived terms are the derivatives of the rewritten Lagrangian.
+/// The derived terms of a declaration with a pace are the derivatives of the rewritten Lagrangian.
 #[test]
 fn the_rewriting() {
     let body = Needle { energy: -1.3, ..Needle::new(0.8) };
@@ -111,7 +111,7 @@ fn what_is_read_is_of_the_time() {
     assert!((start.momentum() - momentum).norm() < 1e-15 && (paced.velocity(&start) - velocity).norm() < 1e-15);
     let energy = 0.5 * momentum.dot(&velocity) - 1.0 / body.gap(&body.a);
     assert!((paced.energy(&start) - energy).abs() < 1e-15 && (start.advected().1.0.x - energy).abs() < 1e-15);
-    // The steps of `τ` with that energy, and their times.
+    // Steps of `τ` by a scene with that energy are compared, and their times are summed.
     let own = Stepper::new(Needle { energy, ..body }, h).unwrap();
     let (mut state, mut other) = (start, own.start_with_momentum(SO3::identity(), momentum).unwrap());
     let mut time = 0.0;

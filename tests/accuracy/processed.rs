@@ -33,7 +33,7 @@ fn processed_splittings_have_their_orders() {
     }
 }
 
-/// Outputs after each step, after some or none give the same bits.
+/// Reading the state after each step, after some or none doesn't change its bits.
 #[test]
 fn looking_does_not_disturb() {
     let motion = Motion::chaotic();

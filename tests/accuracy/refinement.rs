@@ -9,9 +9,9 @@ use liestep::{SetupError, StepError};
 use liestep_refinement::{Effort, Measurement, Reference, Refinement, RefinementError, convergence, work_precision};
 use workbench::measure::relative;
 
-type Made = (Stepper<HeavyTop>, State<SO3, Vector3<f64>>);
+type TopRun = (Stepper<HeavyTop>, State<SO3, Vector3<f64>>);
 
-fn looping() -> impl Fn(f64) -> Result<Made, SetupError> {
+fn looping() -> impl Fn(f64) -> Result<TopRun, SetupError> {
     let motion = Motion::looping();
     move |h| {
         let stepper = Stepper::new(motion.top.clone(), h)?;
@@ -72,11 +72,11 @@ fn what_has_no_answer_is_a_typed_error() {
     for (counts, reference) in [(vec![], known(1.0)), (vec![0, 10], known(1.0)), (vec![10], Reference::Finest)] {
         assert_eq!(convergence(looping(), 1.0, counts, reference).unwrap_err(), RefinementError::NoSteps);
     }
-    // This closure ignores its step.
+    // A constructor that ignores its step is refused.
     let deaf = |_| looping()(0.01);
     let refused = convergence(deaf, 1.0, [100, 200], known(1.0)).unwrap_err();
     assert_eq!(refused, RefinementError::OtherStep { asked: 0.005, found: 0.01 });
-    // This step is beyond the quarter turn.
+    // A step beyond the quarter turn is refused.
     let refused = convergence(looping(), 1.0, [2, 100], known(1.0)).unwrap_err();
     let RefinementError::Step { step: 0.5, cause: StepError::BeyondSolvable { .. } } = refused else {
         panic!("{refused}")
@@ -117,7 +117,7 @@ fn shorter_steps_end_where_errors_stop_falling() {
     // At h = 1 the error is 1, which is another motion; the floor begins at the twelfth, and three more confirm it.
     assert_eq!(table.rows().first().map(|row| row.step), Some(0.5));
     assert_eq!(table.rows().len(), 11 + 3);
-    // Every second run fails.
+    // The table leaves out runs that fail, as every second one does here.
     let mut fails = false;
     let half = Refinement::timed(
         steps().take(9),
@@ -177,7 +177,7 @@ fn work_leaves_out_steps_that_are_refused_and_ends_that_are_not_finite() {
     let nowhere = Reference::End(End { attitude: SO3::identity(), velocity: Vector3::new(f64::NAN, 0.0, 0.0) });
     let refused = work_precision(looping(), 1.0, [100, 200], nowhere, BRIEF).unwrap_err();
     assert_eq!(refused, RefinementError::NonFinite { step: 0.005 });
-    // The reference is another motion.
+    // A reference of another motion is refused.
     let spun = Reference::End(End { attitude: SO3::identity(), velocity: Vector3::new(1e3, 0.0, 0.0) });
     let refused = work_precision(looping(), 1.0, [100, 200], spun, BRIEF).unwrap_err();
     assert!(matches!(refused, RefinementError::OtherMotion { least } if least >= 0.5), "{refused}");
@@ -191,7 +191,7 @@ fn work_leaves_out_steps_that_are_refused_and_ends_that_are_not_finite() {
 fn the_time_to_an_error_is_read_off_straight_lines() {
     let row = |h: f64| Measurement { step: h, error: 1e-3 * h * h, iterations: None, seconds: Some(2e-3 / h) };
     let table: Refinement = [1.0, 0.5, 0.25].map(row).into_iter().collect();
-    // At the runs, half way between two of them in both logarithms, and beyond the table.
+    // The time is read at the runs, half way between two of them in both logarithms, and beyond the table.
     assert_eq!(table.seconds_to(1e-3), Some(2e-3));
     assert_eq!(table.seconds_to(1.0), Some(2e-3));
     let between = table.seconds_to(1e-3 / 2.0).unwrap();
@@ -207,7 +207,7 @@ fn the_order_is_read_off_finite_errors_above_zero() {
     let squares = Refinement::of(halvings.map(|h| (h, h * h)));
     assert!((squares.order_above(0.0).unwrap() - 2.0).abs() < 1e-12);
     for odd in [f64::INFINITY, f64::NAN, 0.0] {
-        // Beside four others such a row doesn't count; in place of one it leaves too few.
+        // A row with such a number beside four others doesn't count; in place of one of these it leaves too few.
         let with = |first| Refinement::of([first].into_iter().chain(halvings.map(|h| (h, h * h))));
         assert_eq!(with((0.8, odd)).order_above(-1.0), squares.order_above(0.0));
         assert_eq!(with((odd, 0.7)).order_above(-1.0), squares.order_above(0.0));

@@ -1,7 +1,7 @@
 //! Kinetic-potential splittings.
 
 use checks::order::{End, TOPS, assert_order, counts, end, error};
-use checks::solvers::Counted;
+use checks::solvers::JacobianCounter;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, Motion, SixthOrderBody, Top as _};
 use liestep::accuracy::Accuracy;
 use liestep::effects::{GravityGradient, Rotor, Spring};
@@ -92,7 +92,7 @@ fn force_gradients_of_any_potential() {
     }
 }
 
-/// The top has no closed exact flow.
+/// Splittings with a declared kinetic flow have their order for a top without a closed exact flow.
 #[test]
 fn declared_kinetic_flows_keep_the_order() {
     let chaotic = (TOPS[3], 10.0);
@@ -156,11 +156,11 @@ fn a_lagrangian_that_cannot_be_split_is_refused() {
 /// A scene without the derivative of its kick can be split, but not with force gradients.
 #[test]
 fn a_force_gradient_has_to_be_written() {
-    let top = Counted(HeavyTop::thesis());
+    let top = JacobianCounter(HeavyTop::thesis());
     let split = |scheme| Stepper::split(top.clone(), 0.01, symmetric(&top.0), scheme).map(|_| ());
     assert_eq!(split(SplittingScheme::NYSTROM_6), Ok(()));
     assert_eq!(split(SplittingScheme::FORCE_GRADIENT_2), Err(SetupError::NoForceGradient));
-    // The choice by accuracy avoids such schemes.
+    // The choice by accuracy leaves out schemes with force gradients.
     let accuracy = Accuracy { tolerance: 1e-4, horizon: 1.0 };
     let stepper = Stepper::for_accuracy(top, accuracy, SO3::identity(), Vector3::new(0.5, 2.0, 12.0)).unwrap();
     assert!(!stepper.choice().to_string().contains("force gradient"));

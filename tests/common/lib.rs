@@ -1,6 +1,6 @@
 //! Code that the tests share: declared Lagrangians, reference data, random states, order estimates.
 
-// A library of this repository alone.
+// Public items need no full documentation, as only tests of this repository use them.
 #![allow(missing_docs, clippy::missing_errors_doc, clippy::missing_panics_doc)]
 #![allow(clippy::must_use_candidate, clippy::return_self_not_must_use)]
 

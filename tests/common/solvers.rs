@@ -97,17 +97,17 @@ macro_rules! solved_as {
 
 /// A Lagrangian whose Jacobians are counted.
 #[derive(Clone, Debug)]
-pub struct Counted<L>(pub L);
+pub struct JacobianCounter<L>(pub L);
 
-impl<L: DiscreteLagrangian> DiscreteLagrangian for Counted<L> {
+impl<L: DiscreteLagrangian> DiscreteLagrangian for JacobianCounter<L> {
     declared_as!(L);
 }
 
-impl<L: Term> Term for Counted<L> {
+impl<L: Term> Term for JacobianCounter<L> {
     term_as!(L);
 }
 
-impl<L: Effect> Effect for Counted<L> {
+impl<L: Effect> Effect for JacobianCounter<L> {
     solved_as!(L);
 
     fn newton_system(
@@ -128,7 +128,7 @@ std::thread_local! {
     static SYSTEMS: Cell<u32> = const { Cell::new(0) };
 }
 
-/// The number of Jacobians of a [`Counted`] that `run` evaluates.
+/// The number of Jacobians of a [`JacobianCounter`] that `run` evaluates.
 pub fn jacobians<T>(run: impl FnOnce() -> T) -> (T, u32) {
     let before = SYSTEMS.get();
     let outcome = run();

@@ -138,7 +138,8 @@ fn discretisations_converge_to_the_continuous_motion() {
     check(ChordExp::new, "chord(exp)");
 }
 
-/// A sum is the sum of the terms, and a rotor adds its bias: by hand, `μ̇ = μ × Ω + m g w × ρ` with `μ = JΩ + s`.
+/// The equations of a sum are the sums of the terms' equations, and a rotor adds its bias: by hand,
+/// `μ̇ = μ × Ω + m g w × ρ` with `μ = JΩ + s`.
 #[test]
 fn sums_have_continuous_equations() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap();
@@ -161,7 +162,7 @@ fn sums_have_continuous_equations() {
 /// A body without steps, and a pull on it.
 #[lagrangian(group = SO3, velocity = Omega, l = 0.5 * Omega.dot(&(J * Omega)))]
 #[derive(Clone, Copy)]
-struct Turning {
+struct BodyWithoutSteps {
     J: Inertia,
 }
 
@@ -173,7 +174,7 @@ struct Pull {
     up: Vector3<f64>,
 }
 
-/// The torque of the scene.
+/// The torque of a scene, from the rate of the momentum.
 fn torque<L>(scene: &L, velocity: &Vector3<f64>, w: &L::Advected) -> Vector3<f64>
 where
     L: ContinuousLagrangian<Scalar = f64, Group = SO3>,
@@ -186,7 +187,7 @@ where
 #[test]
 fn terms_with_steps_and_without_add() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 1.7, 1.0)).unwrap();
-    let turning = Turning { J: J_d.to_inertia() };
+    let turning = BodyWithoutSteps { J: J_d.to_inertia() };
     let pull = Pull { k: 0.7, rho: Vector3::new(0.1, -0.2, 1.0), up: Vector3::z() };
     let gravity = Gravity { m: 1.1, g: 9.81, rho: Vector3::new(0.3, 0.1, 0.5), up: Vector3::z() };
     let (velocity, w) = (Vector3::new(0.5, 2.0, -1.0), Vector3::new(0.1, 0.6, 0.7));
@@ -246,13 +247,13 @@ impl Place for R3 {
 
 /// The kinetic energy `c² (√(1 + ξ²/c²) − 1)` has momenta below `c` alone: larger ones are an error.
 #[lagrangian(group = R3, velocity = v, l = (c * c) * (1.0 + v.norm_squared() / (c * c)).sqrt())]
-struct Bounded {
+struct BoundedParticle {
     c: f64,
 }
 
 #[test]
 fn a_momentum_without_a_velocity_is_an_error() {
-    let bounded = Bounded { c: 2.0 };
+    let bounded = BoundedParticle { c: 2.0 };
     let velocity = bounded.velocity(&Vector3::new(1.9, 0.0, 0.0), &()).unwrap();
     assert!((velocity.x - 1.9 / (1.0_f64 - 1.9 * 1.9 / 4.0).sqrt()).abs() < 1e-9);
     let error = bounded.velocity(&Vector3::new(2.1, 0.0, 0.0), &()).unwrap_err();
@@ -265,24 +266,24 @@ fn a_momentum_without_a_velocity_is_an_error() {
     velocity = v,
     l = m * (0.5 * v.norm_squared() + 2.5 * v.norm_squared().powi(2) - (10.0 / 3.0) * v.norm_squared().powi(3)),
 )]
-struct Falling {
+struct FoldedParticle {
     m: f64,
 }
 
 /// Newton's iteration converges to `v = 0.7056` for this momentum, which isn't on the branch of rest.
 #[test]
 fn a_velocity_beyond_a_singularity_is_an_error() {
-    let falling = Falling { m: 1.0 };
+    let falling = FoldedParticle { m: 1.0 };
     let beyond = Vector3::new(0.705_6, 0.0, 0.0);
     assert!((falling.momentum(&beyond, &()).x - 0.72).abs() < 1e-3);
     let error = falling.velocity(&Vector3::new(0.72, 0.0, 0.0), &()).unwrap_err();
     assert!(matches!(error, StepError::Singular), "{error}");
 }
 
-/// The Lagrangian `Bounded` with a momentum at rest, as of a charge in a vector potential.
+/// The Lagrangian `BoundedParticle` with a momentum at rest, as of a charge in a vector potential.
 #[lagrangian(group = R3, velocity = v, l = (c * c) * (1.0 + v.norm_squared() / (c * c)).sqrt() + s.dot(&v))]
 #[derive(Clone)]
-struct Charged {
+struct ChargedParticle {
     c: f64,
     s: Vector3<f64>,
 }
@@ -290,14 +291,14 @@ struct Charged {
 /// The cancelling terms are as large as the momentum at rest, however small the momentum itself.
 #[test]
 fn a_momentum_that_is_small_beside_that_at_rest() {
-    let charged = Charged { c: 2.0, s: Vector3::new(0.7, -30.0, 1.3) };
+    let charged = ChargedParticle { c: 2.0, s: Vector3::new(0.7, -30.0, 1.3) };
     for size in [0.0, 1e-300, 1e-9, 1e-4, 1.0] {
         let momentum = charged.s + Vector3::new(0.6, 0.0, -0.8) * size;
         let expected = (momentum - charged.s) / (1.0 - size * size / 4.0_f64).sqrt();
         let velocity = charged.velocity(&momentum, &()).unwrap();
         assert!((velocity - expected).norm() < 1e-14 * charged.s.norm(), "{size}: {velocity}");
         // The momentum is as far below c as the momentum at rest allows.
-        let standing = Charged { c: 40.0, ..charged.clone() };
+        let standing = ChargedParticle { c: 40.0, ..charged.clone() };
         let velocity = standing.velocity(&(momentum - charged.s), &()).unwrap();
         let kinetic = momentum - charged.s * 2.0;
         let expected = kinetic / (1.0 - kinetic.norm_squared() / 1600.0).sqrt();
@@ -314,7 +315,7 @@ fn a_momentum_that_is_small_beside_that_at_rest() {
         + Omega.dot(&(A * w)) - m * g * w.dot(&rho),
 )]
 #[derive(Clone)]
-struct Sliding {
+struct ContinuousSlidingTop {
     J: Inertia,
     A: Matrix3<f64>,
     m: f64,
@@ -356,7 +357,7 @@ fn assert_sliding<L>(
         near("Euler–Poincaré", inertia * acceleration + change, torque);
         let energy = 0.5 * xi.dot(&(inertia * xi)) + m * g * w.dot(&rho);
         assert!((system.hamiltonian(&momentum, &w).unwrap() - energy).abs() <= 1e-13 * (1.0 + energy.abs()));
-        // The right-hand side takes w from the attitude, here that of a fixed vector.
+        // The right-hand side computes `w` from the attitude, here for a vector fixed in space.
         let numbers = RightHandSide::new(system.clone()).unwrap();
         let (_, rate) = numbers.rates(&SO3::identity(), &momentum).unwrap();
         near("for a solver", rate, system.lie_poisson(&momentum, &Vector3::z()).unwrap().0);
@@ -370,16 +371,18 @@ fn an_inertia_that_depends_on_what_is_advected() {
     let J = Matrix3::new(3.0, 0.2, -0.1, 0.2, 2.5, 0.3, -0.1, 0.3, 4.0);
     let A = Matrix3::new(0.4, -0.7, 0.1, 0.3, 0.2, -0.5, 0.6, 0.1, -0.3);
     let (m, g, rho) = (1.1, 9.81, Vector3::new(0.5, -0.2, 1.0));
-    let sliding = |A: Matrix3<f64>, m: f64| Sliding { J: Inertia::new(J).unwrap(), A, m, g, rho, up: Vector3::z() };
+    let sliding =
+        |A: Matrix3<f64>, m: f64| ContinuousSlidingTop { J: Inertia::new(J).unwrap(), A, m, g, rho, up: Vector3::z() };
     let limit = SlidingTop { J_d: Inertia::new(J).unwrap().to_nonstandard(), m, g, rho, up: Vector3::z() };
-    const { assert!(matches!(Sliding::LEGENDRE, Legendre::Varying)) };
+    const { assert!(matches!(ContinuousSlidingTop::LEGENDRE, Legendre::Varying)) };
     const { assert!(matches!(SlidingTop::LEGENDRE, Legendre::Varying)) };
 
     assert_sliding("declared", &sliding(A, m), (J, A), (m, g, rho));
     assert_sliding("limit", &limit, (J, Matrix3::zeros()), (m, g, rho));
 
     // For a singular inertia no momentum has a unique velocity.
-    let unit = Sliding { J: Inertia::new(Matrix3::identity()).unwrap(), rho: Vector3::x(), ..sliding(A, -1.0) };
+    let unit =
+        ContinuousSlidingTop { J: Inertia::new(Matrix3::identity()).unwrap(), rho: Vector3::x(), ..sliding(A, -1.0) };
     let error = unit.velocity(&Vector3::new(1.0, 2.0, 3.0), &Vector3::z()).unwrap_err();
     assert!(matches!(error, StepError::Singular), "{error}");
     assert!(matches!(RightHandSide::new(unit), Err(SetupError::SingularKinetic { .. })));
@@ -390,8 +393,8 @@ fn an_inertia_that_depends_on_what_is_advected() {
 fn a_sum_carries_the_momenta_of_both_terms() {
     let (m, g, rho, up, A) = (1.1, 9.81, Vector3::new(0.5, -0.2, 1.0), Vector3::z(), Matrix3::identity() * 0.4);
     let inertia = |moments: [f64; 3]| Inertia::from_principal_moments(moments.into()).unwrap();
-    let sliding = |moments| Sliding { J: inertia(moments), A, m, g, rho, up };
-    let turning = Turning { J: inertia([1.0, 1.5, 2.0]) };
+    let sliding = |moments| ContinuousSlidingTop { J: inertia(moments), A, m, g, rho, up };
+    let turning = BodyWithoutSteps { J: inertia([1.0, 1.5, 2.0]) };
     let (velocity, w) = (Vector3::new(0.5, 2.0, 1.2), Vector3::new(0.1, 0.6, 0.7));
     let (expected, _) = sliding([3.0, 4.0, 4.5]).euler_poincare(&velocity, &w).unwrap();
     let (second, _) = (turning + sliding([2.0, 2.5, 2.5])).euler_poincare(&velocity, &((), w)).unwrap();

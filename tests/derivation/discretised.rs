@@ -273,7 +273,7 @@ fn on_sl2() {
     l = 0.5 * xi.dot(&(M * xi)) - r.dot(&(B * r)),
     discretise = trapezoid(Cayley),
 )]
-struct Carried {
+struct FormOnSL2 {
     M: Matrix3<f64>,
     r: Vector2<f64>,
     form: CovariantTensor<f64, 2>,
@@ -292,7 +292,7 @@ fn a_form_is_carried_forwards() {
         let l = |form: &Matrix2<HyperDual64>| xi.dot(&(long_m * xi)) * 0.5 - long_r.dot(&(form * long_r));
         (l(&form.0) + l(&(f.transpose() * form.0 * f))) * h * 0.5
     };
-    assert_terms::<_, SL2<HyperDual64>, _>("SL(2), a form", (&Carried { M, r, form }, 0.05, 0.0), rule, (5, 0.5));
+    assert_terms::<_, SL2<HyperDual64>, _>("SL(2), a form", (&FormOnSL2 { M, r, form }, 0.05, 0.0), rule, (5, 0.5));
 }
 
 #[test]
@@ -374,14 +374,14 @@ fn a_fast_particle() {
     discretise = trapezoid(Cayley),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Folded<T: Real> {
+struct FoldedBody<T: Real> {
     k: T,
 }
 
 /// Beyond the fold, and for a momentum of a velocity in the opposite direction, a start would have another velocity.
 #[test]
 fn a_velocity_beyond_the_fold_of_its_momentum() {
-    let folded = Folded { k: 1.0 };
+    let folded = FoldedBody { k: 1.0 };
     let (stepper, fold) = (Stepper::new(folded, 0.01).unwrap(), 1.0 / 3.0_f64.sqrt());
     let gauss = CotangentGauss::<_, 2, 3>::new(folded, 0.01).unwrap();
     let along = |size: f64| Vector3::new(0.6, 0.0, -0.8) * size;
@@ -411,7 +411,7 @@ fn a_velocity_beyond_the_fold_of_its_momentum() {
 #[test]
 fn a_momentum_that_no_velocity_has() {
     let (near, beyond) =
-        (Stepper::new(Folded { k: 0.01_f64 }, 1.0).unwrap(), Stepper::new(Folded { k: 1.0_f64 }, 1.0).unwrap());
+        (Stepper::new(FoldedBody { k: 0.01_f64 }, 1.0).unwrap(), Stepper::new(FoldedBody { k: 1.0_f64 }, 1.0).unwrap());
     // The largest momentum of a velocity is 0.3849; the discrete one, `(1 + h²ξ²/4) (1 − ξ²) ξ`, reaches 0.418.
     let momentum = Vector3::new(0.6, 0.0, -0.8) * 0.395;
     let mut state = beyond.adopt(&near.start_with_momentum(SO3::identity(), momentum).unwrap());
@@ -423,7 +423,7 @@ fn a_momentum_that_no_velocity_has() {
     let error = beyond.step_forced(&mut state, &force).unwrap_err();
     assert!(matches!(error, StepError::NonFinite { what: "control force" }), "{error}");
     assert_eq!(state, before);
-    let event = |now: &Moment<'_, Stepper<Folded<f64>>>| beyond.velocity(now).x;
+    let event = |now: &Moment<'_, Stepper<FoldedBody<f64>>>| beyond.velocity(now).x;
     let error = beyond.observed(&mut state).event(Event::rising(), event, |_| ()).steps(1).unwrap_err();
     assert!(matches!(error, RunError::NotANumber { event: 0, .. }), "{error}");
     assert_eq!(state, before);
@@ -438,8 +438,8 @@ fn a_momentum_that_no_velocity_has() {
 fn a_lane_without_a_velocity_spoils_no_other() {
     type Four = WideF64x4;
     let momenta: [Vector3<f64>; 4] = [0.0, 0.3, 0.5, 0.38].map(|size| Vector3::new(0.6, 0.0, -0.8) * size);
-    let four = |k: f64| Stepper::new(Folded { k: Four::from([k; 4]) }, Four::from([0.01; 4])).unwrap();
-    let one = |k: f64| Stepper::new(Folded { k }, 0.01).unwrap();
+    let four = |k: f64| Stepper::new(FoldedBody { k: Four::from([k; 4]) }, Four::from([0.01; 4])).unwrap();
+    let one = |k: f64| Stepper::new(FoldedBody { k }, 0.01).unwrap();
     // The fold of this Lagrangian is far away, so all lanes may start.
     let (stepper, alone, place) = (four(1.0), one(1.0), SO3::<Four>::identity());
     let gathered = Vector3::gathered(&momenta).unwrap();

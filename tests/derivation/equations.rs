@@ -116,7 +116,7 @@ fn files_and_tests_exist() {
                 source = fs::read_to_string(root.join(word)).ok();
             } else if row.len() >= 3 && !file.is_empty() {
                 let text = source.as_deref().unwrap_or_default();
-                // A function, or an entry of a list from which a macro generates tests.
+                // The definition of a test: a function, or an entry of a list from which a macro generates tests.
                 let forms = [format!("fn {word}("), format!("fn {word}<"), format!("{word} \""), format!("{word} on_")];
                 assert!(forms.iter().any(|form| text.contains(form)), "{file} has no test {word}");
                 tests += 1;

@@ -30,21 +30,21 @@ fn lane<E: Real + RealField>(random: &mut Random, speed: f64) -> Lane<E> {
     Lane { top, attitude, velocity: vector(random.direction() * speed) }
 }
 
-type Running<T> = (Stepper<Top<T>>, liestep::State<SO3<T>, Vector3<T>>);
+type TopRun<T> = (Stepper<Top<T>>, liestep::State<SO3<T>, Vector3<T>>);
 
-fn start<T: Real>(top: Top<T>, h: f64, attitude: SO3<T>, velocity: Vector3<T>) -> Running<T> {
+fn start<T: Real>(top: Top<T>, h: f64, attitude: SO3<T>, velocity: Vector3<T>) -> TopRun<T> {
     let stepper = Stepper::new(top, nalgebra::convert(h)).unwrap();
     let state = stepper.start(attitude, velocity).unwrap();
     (stepper, state)
 }
 
-fn together<T: Wide>(lanes: &[Lane<T::Element>], h: f64) -> Running<T> {
+fn together<T: Wide>(lanes: &[Lane<T::Element>], h: f64) -> TopRun<T> {
     let top = Top::gathered(&of_each(lanes, |lane| lane.top)).unwrap();
     let attitude = SO3::gathered(&of_each(lanes, |lane| lane.attitude)).unwrap();
     start(top, h, attitude, Vector3::gathered(&of_each(lanes, |lane| lane.velocity)).unwrap())
 }
 
-fn alone<T: Wide>(lanes: &[Lane<T::Element>], h: f64) -> Vec<Running<T::Element>> {
+fn alone<T: Wide>(lanes: &[Lane<T::Element>], h: f64) -> Vec<TopRun<T::Element>> {
     of_each(lanes, |lane| start(lane.top, h, lane.attitude, lane.velocity))
 }
 
@@ -96,7 +96,7 @@ fn each_lane_moves_as_alone() {
 #[test]
 fn composed_and_compensated_lanes_move_as_alone() {
     let lanes: [Lane<f64>; 8] = spread(12, 16.0);
-    let composed = |(stepper, state): Running<f64>| {
+    let composed = |(stepper, state): TopRun<f64>| {
         let composition = Stepper::composed(*stepper.scene(), 0.01, CompositionScheme::SUZUKI_4).unwrap();
         let state = composition.adopt(&state);
         (composition, state)
@@ -204,7 +204,7 @@ fn an_unsolvable_lane_leaves_all_as_they_were() {
         "{refused:?}"
     );
     assert_eq!(state, before);
-    // Without that lane the others move.
+    // The other lanes move if that lane has a solution.
     lanes[1].velocity = Vector3::x();
     assert_independent::<WideF64x4>(&lanes, 0.01, 10);
 }
@@ -231,7 +231,7 @@ fn a_lane_that_is_not_finite_is_refused() {
 fn lanes_are_put_together_and_taken_apart_on_the_way() {
     let lanes: [Lane<f64>; 8] = spread(13, 32.0);
     let mut singles = alone::<AutoF64x8>(&lanes, 0.01);
-    let run = |singles: &mut [Running<f64>], steps| {
+    let run = |singles: &mut [TopRun<f64>], steps| {
         for (stepper, state) in singles {
             stepper.run(state, steps).unwrap();
         }
@@ -326,7 +326,7 @@ fn bodies_that_are_unlike_are_refused_by_their_lane() {
     let mut bodies = alone::<WideF64x4>(&lanes, 0.01);
     let (stepper, state) = &mut bodies[2];
     stepper.step(state).unwrap();
-    let refused = |bodies: &[Running<f64>]| Batch::<WideF64x4, _>::new(bodies).map(drop).unwrap_err();
+    let refused = |bodies: &[TopRun<f64>]| Batch::<WideF64x4, _>::new(bodies).map(drop).unwrap_err();
     assert_eq!(refused(&bodies), SetupError::Unlike { lane: 2 });
     assert_eq!(refused(&[]), SetupError::Unlike { lane: 0 });
 }

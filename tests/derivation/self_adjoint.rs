@@ -55,7 +55,7 @@ struct AddedMass {
     l_d = ((F - I) * J * (F - I).transpose()).trace() / (2.0 * h)
         + 0.5 * h * k * (1.0 / (c - p).norm() + 1.0 / (c - F * p).norm()),
 )]
-struct Attracted {
+struct PointBody {
     J: Matrix4<f64>,
     k: f64,
     p: Point3<f64>,
@@ -109,7 +109,7 @@ fn it_is_found_by_the_normal_forms() {
 #[test]
 fn it_is_found_at_random_points() {
     let how = "at random points, a wrong one would pass with a probability below 2⁻";
-    let all = [found::<Body>, found::<SymmetricAddedMass>, found::<Attracted>];
+    let all = [found::<Body>, found::<SymmetricAddedMass>, found::<PointBody>];
     let all = all.into_iter().chain([found::<OrbitingBody>, found::<TetheredPlate>]);
     assert!(all.map(|of| of("=", how)).all(|found| found == Some(true)));
 }
@@ -125,7 +125,7 @@ fn it_is_missing() {
 /// The declaration as a point is used as a hypothesis: of the four coordinates three remain.
 #[test]
 fn points_are_a_hypothesis() {
-    assert!(Attracted::DERIVATION.contains("p₄ = 1, c₄ = 1"), "{}", Attracted::DERIVATION);
+    assert!(PointBody::DERIVATION.contains("p₄ = 1, c₄ = 1"), "{}", PointBody::DERIVATION);
     assert!(!AttractedVector::DERIVATION.contains("₄ = 1"));
 }
 
@@ -134,7 +134,7 @@ fn points_are_a_hypothesis() {
 fn points_are_homogeneous_vectors() {
     let J = Matrix4::from_diagonal(&Vector4::new(1.0, 2.0, 3.0, 1.5));
     let (p, centre) = (Point3::new(0.3, -0.2, 0.5), Point3::new(2.0, 1.0, -1.5));
-    let points = Attracted { J, k: 2.0, p, centre };
+    let points = PointBody { J, k: 2.0, p, centre };
     let vectors =
         AttractedVector { J, k: 2.0, p: p.to_homogeneous(), centre: ContravariantVector(centre.to_homogeneous()) };
     let f = SE3::from_rotation_and_translation(UnitQuaternion::new(p.coords), Vector3::new(0.1, 0.7, -0.4)).matrix();

@@ -14,24 +14,24 @@ type Outcome<T> = [T; 15];
 
 /// The quantity that a parameter `s` of value one scales.
 #[derive(Clone, Copy, Debug)]
-enum Scaled {
+enum ScaledQuantity {
     Weight,
     Moment,
     Velocity,
 }
 
-type Running<T> = (Stepper<Top<T>>, State<SO3<T>, Vector3<T>>);
+type TopRun<T> = (Stepper<Top<T>>, State<SO3<T>, Vector3<T>>);
 
 /// The asymmetric top with a scaled parameter, in its initial state.
-fn start<T: Real + RealField>(scaled: Scaled, s: T) -> Running<T> {
+fn start<T: Real + RealField>(scaled: ScaledQuantity, s: T) -> TopRun<T> {
     let vector = |x: f64, y: f64, z: f64| Vector3::new(x, y, z).map(nalgebra::convert::<f64, T>);
     let mut moments = vector(2.0, 3.0, 4.5);
     let mut weight: T = nalgebra::convert(9.81);
     let mut velocity = vector(0.5, 2.0, 6.0);
     match scaled {
-        Scaled::Weight => weight *= s,
-        Scaled::Moment => moments.y *= s,
-        Scaled::Velocity => velocity *= s,
+        ScaledQuantity::Weight => weight *= s,
+        ScaledQuantity::Moment => moments.y *= s,
+        ScaledQuantity::Velocity => velocity *= s,
     }
     let J_d = DiagonalNonstandardInertia::from_principal_moments(moments).unwrap();
     let top = Top { J_d, weight, rho: vector(0.3, 0.2, 0.4), up: Vector3::z() };
@@ -42,7 +42,7 @@ fn start<T: Real + RealField>(scaled: Scaled, s: T) -> Running<T> {
 }
 
 /// The quantities after [`STEPS`] steps.
-fn outcome<T: Real + RealField>(scaled: Scaled, s: T) -> Outcome<T> {
+fn outcome<T: Real + RealField>(scaled: ScaledQuantity, s: T) -> Outcome<T> {
     let (stepper, mut state) = start(scaled, s);
     for _ in 0..STEPS {
         stepper.step(&mut state).unwrap();
@@ -53,7 +53,7 @@ fn outcome<T: Real + RealField>(scaled: Scaled, s: T) -> Outcome<T> {
 }
 
 /// Central differences of orders 2, 4, 6, … by Richardson's extrapolation.
-fn differences(scaled: Scaled) -> Outcome<f64> {
+fn differences(scaled: ScaledQuantity) -> Outcome<f64> {
     let central = |e: f64| {
         let (plus, minus) = (outcome(scaled, 1.0 + e), outcome(scaled, 1.0 - e));
         core::array::from_fn::<f64, 15, _>(|k| (plus[k] - minus[k]) / (2.0 * e))
@@ -62,7 +62,7 @@ fn differences(scaled: Scaled) -> Outcome<f64> {
     core::array::from_fn(|k| (64.0 * fine[k] - 20.0 * middle[k] + coarse[k]) / 45.0)
 }
 
-const ALL: [Scaled; 3] = [Scaled::Weight, Scaled::Moment, Scaled::Velocity];
+const ALL: [ScaledQuantity; 3] = [ScaledQuantity::Weight, ScaledQuantity::Moment, ScaledQuantity::Velocity];
 
 #[test]
 fn of_a_trajectory() {
@@ -87,7 +87,7 @@ fn of_one_solve() {
     for scaled in ALL {
         let (stepper, mut state) = start(scaled, Dual64::from(1.0).derivative());
         for _ in 0..STEPS {
-            // The guesses are zero, and one without a derivative.
+            // The guess is zero, or a number without a derivative.
             let (momentum, vertical) = (state.momentum(), state.advected());
             let cold = stepper.flow().step(&momentum, &vertical, &Vector3::zeros()).unwrap();
             let constant = cold.coordinates.map(|entry| Dual64::from(entry.re * (1.0 + 1e-4)));

@@ -18,17 +18,17 @@ type Vector = Vector3<f64>;
 type Matrix = Matrix3<f64>;
 
 /// A body in the notation of the thesis.
-struct Printed {
+struct PrintedBody {
     J_d: Matrix,
     mg: f64,
     rho: Vector,
 }
 
-fn top() -> (FullTop, Printed) {
+fn top() -> (FullTop, PrintedBody) {
     let J_d = Matrix::new(1.4, 0.2, -0.1, 0.2, 0.9, 0.15, -0.1, 0.15, 0.6);
     let (m, g, rho) = (1.3, 9.81, Vector::new(0.3, 0.2, 0.4));
     let top = FullTop { J_d: NonstandardInertia::new(J_d).unwrap(), m, g, rho, up: Vector::z() };
-    (top, Printed { J_d, mg: m * g, rho })
+    (top, PrintedBody { J_d, mg: m * g, rho })
 }
 
 /// The vector `M^∨` of the skew part of a matrix.
@@ -40,7 +40,7 @@ fn hat(v: &Vector) -> Matrix {
     v.cross_matrix()
 }
 
-impl Printed {
+impl PrintedBody {
     /// The moment `mg w × ρ`.
     fn moment(&self, w: &Vector) -> Vector {
         w.cross(&self.rho) * self.mg
@@ -83,7 +83,7 @@ fn close(what: &str, a: Vector, b: Vector, allowed: f64) {
 #[test]
 fn derived_terms_as_printed() {
     let (top, printed) = top();
-    let Printed { J_d, mg, rho } = &printed;
+    let PrintedBody { J_d, mg, rho } = &printed;
     for (f, w) in steps() {
         let (f_t, allowed) = (f.transpose(), ROUNDING * printed.scale());
         let left =
@@ -129,7 +129,7 @@ fn trapezoidal_rule_gives_3_13() {
 /// Equations (3.14) to (3.16) as printed, from the flow on increments.
 #[test]
 fn flow_on_increments_as_printed() {
-    let (top, Printed { J_d, mg, rho }) = top();
+    let (top, PrintedBody { J_d, mg, rho }) = top();
     let flow = DiscreteEulerPoincare::new(top, H).unwrap();
     let mut random = Random::new(317);
     let (mut f, mut w) = (random.rotation_by(0.1), random.direction());
@@ -142,7 +142,7 @@ fn flow_on_increments_as_printed() {
         let missed = (left - right).norm() * H;
         assert!(missed <= ROUNDING, "(3.16): off by {missed:e}");
         assert!((left + right).norm() * H > 1e-5, "the right side counts");
-        // [LML05]: F⁺J_d − J_dF⁺ᵀ − J_dF + FᵀJ_d = h² S(M⁺).
+        // The equation of \[LML05\]: F⁺J_d − J_dF⁺ᵀ − J_dF + FᵀJ_d = h² S(M⁺).
         let theirs = after * J_d - J_d * after.transpose() - J_d * before + before.transpose() * J_d;
         let missed = (theirs - hat(&(seen.cross(&rho) * mg)) * (H * H)).norm();
         assert!(missed <= ROUNDING, "[LML05]: off by {missed:e}");
@@ -191,7 +191,7 @@ fn momentum_in_space_as_printed() {
 /// Erratum: the matrix in the trace is `J_d`, and the inertia is `tr(J_d) I − J_d`.
 #[test]
 fn matrix_in_the_trace() {
-    let (_, Printed { J_d, .. }) = top();
+    let (_, PrintedBody { J_d, .. }) = top();
     let velocity = Vector::new(0.4, -1.1, 0.7);
     let trace = 0.5 * (hat(&velocity) * J_d * hat(&velocity).transpose()).trace();
     let inertia = Matrix::identity() * J_d.trace() - J_d;
@@ -202,7 +202,7 @@ fn matrix_in_the_trace() {
 /// Erratum: the third line of the diamond in section 3.2.1, with its sign and its exponent.
 #[test]
 fn third_line_of_the_diamond() {
-    let (top, Printed { mg, rho, .. }) = top();
+    let (top, PrintedBody { mg, rho, .. }) = top();
     for (f, w) in steps() {
         let line = |sign: f64| {
             Vector::from_fn(|k, _| {

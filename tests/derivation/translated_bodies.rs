@@ -36,7 +36,7 @@ use crate::dual_numbers::assert_terms;
             - 0.5 * h * (U(R, r, x, s) + U(R * F, r + d_2 - d_1, x + d_1, s + t) + w.dot(&rho) + w.dot(&(F * rho)))
     },
 )]
-struct Carried<T: RealField + Copy> {
+struct TranslatedBodies<T: RealField + Copy> {
     J: NonstandardInertia<T>,
     A: Matrix3<T>,
     m: T,
@@ -48,7 +48,7 @@ struct Carried<T: RealField + Copy> {
 }
 
 /// The bodies of a seed.
-fn carried<T: RealField + Copy>(seed: u64) -> Carried<T> {
+fn carried<T: RealField + Copy>(seed: u64) -> TranslatedBodies<T> {
     let mut r = Random::new(seed);
     let root = r.matrix();
     let J = NonstandardInertia::new((root * root.transpose() + Matrix3::identity()).map(convert)).unwrap();
@@ -56,7 +56,7 @@ fn carried<T: RealField + Copy>(seed: u64) -> Carried<T> {
     let mut coefficients = || Vector4::from_fn(|_, _| r.signed()).map(|x| convert(if x < -0.3 { 0.0 } else { x }));
     let (a, b) = (coefficients(), coefficients());
     let mut vector = || r.vector().map(convert);
-    Carried { J, A, m: convert(0.8), rho: vector(), a, b, up: vector(), up_there: vector() }
+    TranslatedBodies { J, A, m: convert(0.8), rho: vector(), a, b, up: vector(), up_there: vector() }
 }
 
 #[test]

@@ -1,5 +1,5 @@
-//! Sums in all orders and bracketings, with random values of all that their terms have: of effects of the library and of
-//! terms declared here, whose fields and vectors have the names of the library's.
+//! Sums of effects in all orders and bracketings, with random parameters: of the library's effects and of terms
+//! declared here, whose fields and vectors have the same names.
 //!
 //! A term that a value switches off is there all the same: what is solved for, and where, is known by types.
 
@@ -20,7 +20,7 @@ use nalgebra::{DVector, Vector3, Vector6};
     l_d = -0.25 * h * m * (w.dot(&rho).powi(2) + w.dot(&(F * rho)).powi(2)),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Leaning {
+struct EndPotential {
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
@@ -59,7 +59,7 @@ struct Push {
     up: Vector3<f64>,
 }
 
-/// All of the terms of two bodies but forces, in one declaration.
+/// All terms of two bodies but forces, in one declaration.
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(
@@ -124,7 +124,7 @@ struct Pushes {
     up_2: Vector3<f64>,
 }
 
-/// A size between zero and one, or zero.
+/// A size between zero and one, or zero for a term without effect.
 fn switched(r: &mut Random) -> f64 {
     let size = r.signed();
     if size < -0.3 { 0.0 } else { size.abs() }
@@ -136,8 +136,8 @@ fn inertia(r: &mut Random) -> Inertia {
     NonstandardInertia::new(axes * nalgebra::Matrix3::from_diagonal(&extent) * axes.transpose()).unwrap().to_inertia()
 }
 
-fn leaning(r: &mut Random) -> Leaning {
-    Leaning { m: switched(r), rho: r.vector(), up: r.direction() }
+fn leaning(r: &mut Random) -> EndPotential {
+    EndPotential { m: switched(r), rho: r.vector(), up: r.direction() }
 }
 
 fn middle(r: &mut Random) -> Middle {
@@ -171,7 +171,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
     (&a - &b).amax() / (1.0 + a.amax().max(b.amax()))
 }
 
-/// All lists are alike to rounding.
+/// Asserts that all lists are equal to rounding.
 fn assert_alike(seed: u64, all: &[Vec<f64>]) {
     for (place, other) in all.iter().enumerate() {
         let distance = apart(&all[0], other);
@@ -179,7 +179,8 @@ fn assert_alike(seed: u64, all: &[Vec<f64>]) {
     }
 }
 
-/// Bodies put one by one and together, as a system of many in all orders, and as one product.
+/// Terms on bodies have the same steps placed one by one and together, as a system of many in all orders, and as one
+/// product.
 #[test]
 fn terms_at_bodies_add_in_all_orders() {
     for seed in 0..500 {
@@ -241,7 +242,7 @@ fn terms_of_a_body_of_fourth_order_add() {
         let potentials = weight(&mut r) + leaning(&mut r);
         let forces = Torque { torque: r.vector() * switched(&mut r) }
             + Thrust { at: r.vector() * switched(&mut r), thrust: r.vector() };
-        // The body is the first, the last and in the middle, in brackets of either kind.
+        // The body is the first term, the last and in the middle, in brackets of either kind.
         let all = [
             after((body + potentials) + forces, attitude, momentum),
             after(body + (forces + potentials), attitude, momentum),

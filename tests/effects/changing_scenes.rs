@@ -1,4 +1,4 @@
-//! A state moves from one scene to another, and what both conserve is conserved throughout.
+//! A state moves from one scene to another, and invariants of both scenes are conserved throughout.
 
 use liestep::Stepper;
 use liestep::effects::{Dipole, Rotor};
@@ -6,7 +6,8 @@ use nalgebra::Vector3;
 
 use super::{body, gravity, started};
 
-/// Free, then heavy, then free again: the vertical component of the spatial momentum belongs to all three.
+/// A body is free, then heavy, then free again: the vertical component of the spatial momentum is conserved in all
+/// three scenes.
 #[test]
 fn gravity_comes_and_goes() {
     let (free, mut floating) = started(body(), 0.01);
@@ -24,7 +25,7 @@ fn gravity_comes_and_goes() {
         assert!((heavy.momentum_along_advected(&falling) - vertical).abs() < 1e-12);
         assert!((heavy.energy(&falling) - energy).abs() < 2e-3 * energy);
     }
-    // Gravity has turned the momentum, or the test would say nothing.
+    // Gravity has changed the momentum, or the test would show nothing.
     assert!((falling.spatial_momentum() - floating.spatial_momentum()).norm() > 1.0);
     let mut floating = free.adopt(&falling);
     let momentum = free.spatial_momentum(&floating);
@@ -35,7 +36,7 @@ fn gravity_comes_and_goes() {
     assert!((floating.spatial_momentum().z - vertical).abs() < 1e-12);
 }
 
-/// The momentum belongs to a time: there and back at once changes nothing, and neither does a detour by the same scene.
+/// Adopting a motion isn't a step: there and back at once changes nothing, and neither does a detour by the same scene.
 #[test]
 fn adopting_is_no_step() {
     let (heavy, mut state) = started(body() + gravity(), 0.01);
@@ -47,7 +48,8 @@ fn adopting_is_no_step() {
         heavy.step(&mut moved).unwrap();
         moved = heavy.adopt(&magnetic.adopt(&moved));
     }
-    // Newton starts from another guess, and what is advected is found from the attitude: both round differently.
+    // Newton's iteration starts from another guess, and advected parameters are computed from the attitude: both round
+    // differently.
     assert!((moved.attitude().as_matrix() - state.attitude().as_matrix()).norm() < 1e-13);
     assert!((moved.momentum() - state.momentum()).norm() < 1e-12);
 }

@@ -1,4 +1,4 @@
-//! Torques that are given anew each step.
+//! Torques that are prescribed anew for each step.
 
 use liestep::effects::{Thrust, Torque};
 use liestep::{SO3, StepError, Stepper};
@@ -7,7 +7,7 @@ use workbench::measure::relative;
 
 use super::{body, gravity, started};
 
-/// The same torque in each step is the effect; so is a thrust with that torque.
+/// A prescribed torque that is the same in each step acts as the effect `Torque`; so does a thrust with that torque.
 #[test]
 fn a_constant_torque_is_the_effect() {
     let torque = Vector3::new(0.3, -0.2, 0.1);
@@ -24,7 +24,7 @@ fn a_constant_torque_is_the_effect() {
     assert!(relative(&pushed.momentum(), &turned.momentum()) < 1e-11);
 }
 
-/// A free body's spatial momentum changes by the impulse: about a fixed axis, exactly.
+/// The spatial momentum of a free body changes by the impulse: about a fixed axis, exactly.
 #[test]
 fn impulses_add_up() {
     let stepper = Stepper::new(body(), 0.0625).unwrap();
@@ -38,7 +38,7 @@ fn impulses_add_up() {
     }
 }
 
-/// A torque that varies in time, at the middle of each step, keeps the second order.
+/// A prescribed torque that varies in time, taken at the middle of each step, doesn't lower the second order.
 #[test]
 fn a_smooth_input_keeps_the_order() {
     let at_one = |steps: u32| {
@@ -63,7 +63,7 @@ fn a_bad_torque_is_an_error_and_changes_nothing() {
         let error = stepper.step_forced(&mut state, &Vector3::new(0.0, bad, 0.0));
         assert_eq!(error, Err(StepError::NonFinite { what: "control force" }));
     }
-    // So much that the body would turn too far in one step.
+    // The torque is so large that the body would turn too far in one step.
     let error = stepper.step_forced(&mut state, &Vector3::new(0.0, 1e9, 0.0));
     assert!(matches!(error, Err(StepError::BeyondSolvable { .. })), "{error:?}");
     assert_eq!(state, before);

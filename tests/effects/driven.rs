@@ -1,4 +1,4 @@
-//! Scenes that each step is given values for.
+//! Scenes with parameters that are prescribed for each step.
 
 use declarations::{FluidDrag, Flyer, Thruster, Torquer};
 use liestep::effects::{Dipole, GravityGradient, RigidBody};
@@ -23,7 +23,7 @@ fn torquer((field, Given(moment)): (Vector3<f64>, Given<f64, 3>)) -> Torquer {
     Torquer { moment, field }
 }
 
-/// A step that is given values is the step of the scene with these values, by any method.
+/// Checks that a step with prescribed values is the step of a scene with these values, by any method.
 fn is_the_step_of_such_a_scene<S, P>(make: impl Fn(Torquer) -> Stepper<S, P>)
 where
     S: Scene<Scalar = f64, Group = SO3, Advected = Values>,
@@ -32,8 +32,9 @@ where
     steps_of_such_a_scene(Vector3::new(0.5, -1.0, 2.0), make);
 }
 
-/// And how many of them needed a remedy. The scene's own values are none, so that whatever is found out about them when
-/// the step is set up is found out about nothing.
+/// Compares steps with prescribed values with those of scenes with these values, and returns how many needed a remedy.
+/// The scene's own values are none, so that whatever is found out about them when the step is set up is found out about
+/// nothing.
 fn steps_of_such_a_scene<S, P>(velocity: Vector3<f64>, make: impl Fn(Torquer) -> Stepper<S, P>) -> usize
 where
     S: Scene<Scalar = f64, Group = SO3, Advected = Values>,
@@ -53,7 +54,7 @@ where
         let apart = relative(&state.momentum(), &expected.momentum());
         assert!(apart < 1e-13, "{apart:e}");
         assert!((state.attitude().as_matrix() - expected.attitude().as_matrix()).norm() < 1e-13);
-        // Between the steps the scene's own values are seen.
+        // The scene's own values are in the state between the steps.
         let (seen, Given(moment)) = state.advected().1;
         assert!((seen - state.attitude().as_matrix().transpose() * own.field).norm() < 1e-13);
         assert_eq!(moment, own.moment);
@@ -75,7 +76,7 @@ fn given_values_are_those_of_the_scene() {
         let flow = SymmetricBody::new(&body().J_d.to_inertia()).unwrap();
         Stepper::split(body() + torquer, 0.1, flow, SplittingScheme::STRANG).unwrap()
     });
-    // With so many drifts a symmetric body's spin is taken out of them, where no torque is about its axis.
+    // A scheme with so many drifts merges a symmetric body's spins, if no torque acts about its axis.
     is_the_step_of_such_a_scene(|torquer| {
         let flow = SymmetricBody::new(&body().J_d.to_inertia()).unwrap();
         Stepper::split(body() + torquer, 0.1, flow, SplittingScheme::NYSTROM_11).unwrap()
@@ -86,7 +87,7 @@ fn given_values_are_those_of_the_scene() {
     });
 }
 
-/// With the values that the scene has, the step is the scene's to rounding, and a dipole's.
+/// A step with the scene's own values prescribed is the scene's step to rounding, and that of a dipole.
 #[test]
 fn a_constant_moment_is_a_dipole() {
     let (moment, field) = (Vector3::new(0.3, -0.2, 0.5), Vector3::new(1.0, 2.0, -0.5));
@@ -112,7 +113,7 @@ fn a_step_that_fails_leaves_the_state() {
         assert_eq!(error, StepError::NonFinite { what: "value given to the step" });
         assert_eq!(state, before);
     }
-    // A torque that no step of this length can take.
+    // The torque is so large that no step of this length has a solution.
     let error = stepper.step_with(&mut state, &((), (Vector3::x() * 1e4, Given(Vector3::y())))).unwrap_err();
     assert!(matches!(error, StepError::BeyondSolvable { .. }), "{error}");
     assert_eq!(state, before);
@@ -121,19 +122,20 @@ fn a_step_that_fails_leaves_the_state() {
 /// The orbital rate, rad/s.
 const RATE: f64 = 0.5;
 
-/// On a circular orbit in the plane of x and y.
+/// A satellite on a circular orbit in the plane of x and y.
 fn satellite(h: f64) -> Stepper<Sum<RigidBody, GravityGradient>> {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.5, 2.5, 3.0)).unwrap();
     let gradient = GravityGradient { GM: RATE * RATE, r: 1.0, J: J_d.to_inertia(), direction: -Vector3::x() };
     Stepper::new(RigidBody { J_d } + gradient, h).unwrap()
 }
 
-/// Where the planet is at a time.
+/// The direction from the satellite to the planet at a time.
 fn planet(t: f64) -> Vector3<f64> {
     -Vector3::new((RATE * t).cos(), (RATE * t).sin(), 0.0)
 }
 
-/// In the plane of the orbit, `J_z θ'' = −3 n² (J_y − J_x) sin θ cos θ` for the angle to the vertical; RK4 on this.
+/// A libration in the plane of the orbit satisfies `J_z θ'' = −3 n² (J_y − J_x) sin θ cos θ` for the angle to the
+/// vertical, which a Runge–Kutta method solves. RK4 on this.
 #[test]
 fn a_satellite_librates_to_second_order() {
     let accelerated = |theta: f64| -3.0 * RATE * RATE * (2.5 - 1.5) / 3.0 * theta.sin() * theta.cos();
@@ -156,7 +158,8 @@ fn a_satellite_librates_to_second_order() {
     assert!(coarse < 0.02 && (coarse / fine - 4.0).abs() < 0.1, "{coarse:e} {fine:e}");
 }
 
-/// In the frame of the orbit the system doesn't depend on time: the Jacobi integral oscillates and doesn't drift.
+/// The Jacobi integral, conserved as the system doesn't depend on time in the frame of the orbit, oscillates and
+/// doesn't drift.
 #[test]
 fn the_jacobi_integral_of_an_orbit_stays() {
     let stepper = satellite(0.1);
@@ -188,7 +191,7 @@ fn flyer() -> Flyer {
     Flyer { J: Matrix4::from_diagonal(&Vector4::new(0.75, 1.25, 1.0, 2.0)) }
 }
 
-/// A nozzle beside the axis turns the body evenly faster, so that its velocity is a Fresnel integral.
+/// A nozzle beside the axis accelerates the body's rotation evenly, so that its velocity is a Fresnel integral.
 #[test]
 fn a_thruster_beside_the_axis_draws_a_spiral() {
     let (force, arm, end) = (1.5, 0.2, 4.0);
@@ -216,7 +219,7 @@ fn a_thruster_beside_the_axis_draws_a_spiral() {
     assert!(coarse < 1e-2 && (coarse / fine - 4.0).abs() < 0.1, "{coarse:e} {fine:e}");
 }
 
-/// Drag alone: the place goes as far as `m v/c`, the body turns as far as `J Ω/c_r`, and the energy falls in every step.
+/// Drag alone: the body moves by `m v/c` and turns by `J Ω/c_r` until it rests, and the energy falls in every step.
 #[test]
 fn drag_stops_a_flyer() {
     let C = Matrix4::from_diagonal(&Vector4::new(0.5, 0.5, 0.5, 0.8));
@@ -233,7 +236,7 @@ fn drag_stops_a_flyer() {
     assert!(energy < 1e-14);
     let end = state.attitude().matrix();
     let turned = end[(1, 0)].atan2(end[(0, 0)]);
-    // J_z = 0.75 + 1.25 and c_z = 0.5 + 0.5.
+    // The inertia and the drag about the axis are J_z = 0.75 + 1.25 and c_z = 0.5 + 0.5.
     assert!((turned - 0.6).abs() < 1e-3, "{turned}");
     let view: Matrix3<f64> = end.fixed_view::<3, 3>(0, 0).into();
     assert!((view.transpose() * view - Matrix3::identity()).norm() < 1e-13);

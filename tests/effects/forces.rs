@@ -1,4 +1,4 @@
-//! Forces by the discrete Lagrange–d'Alembert principle: what is derived from their virtual work, and what they do.
+//! Forces by the discrete Lagrange–d'Alembert principle: the terms derived from their virtual work, and their effects.
 
 use checks::structure::forces::assert_stages;
 use declarations::{FluidDrag, Thruster};
@@ -11,7 +11,7 @@ use workbench::measure::relative;
 
 use super::{body, gravity, moved};
 
-/// A force of no physics, different at both ends, with terms of all kinds.
+/// A force without a physical meaning, different at both ends of a step, with terms of all kinds.
 #[force(
     group = SO3,
     advected(w = up),
@@ -29,7 +29,7 @@ struct Push {
     up: Vector3<f64>,
 }
 
-/// Of forces of every kind, at random increments.
+/// Stages of forces of every kind agree with their virtual work, at random increments.
 #[test]
 fn stages_follow_from_the_virtual_work() {
     let mut r = samples::Random::new(7);
@@ -49,7 +49,7 @@ fn stages_follow_from_the_virtual_work() {
     }
 }
 
-/// On a group with generators that aren't orthogonal to each other, with a matrix that is given.
+/// A force on a group with generators that aren't orthogonal to each other, with a prescribed matrix.
 #[force(
     group = SL2,
     advected(w = line),
@@ -63,7 +63,7 @@ struct Shear {
     line: Vector2<f64>,
 }
 
-/// On the plane, towards a point, with a weight for each displacement.
+/// A force on the plane towards a point, with a weight for each displacement.
 #[force(
     group = SE2,
     advected(p = point),
@@ -76,7 +76,7 @@ struct Pull {
     point: Point2<f64>,
 }
 
-/// About a principal axis the momentum of a constant torque grows by `h τ` a step, and by nothing else.
+/// A constant torque about a principal axis increases the momentum by `h τ` a step, and by nothing else.
 #[test]
 fn a_constant_torque_adds_its_impulse() {
     let stepper = Stepper::new(body() + Torque { torque: Vector3::new(0.0, 0.0, 0.25) }, 0.0625).unwrap();
@@ -87,7 +87,7 @@ fn a_constant_torque_adds_its_impulse() {
     }
 }
 
-/// A heavy body with drag, damping in a field and a torque, against a fine step: second order.
+/// A heavy body with drag, damping in a field and a torque is of second order, compared with a fine step.
 #[test]
 fn forces_keep_the_order() {
     let at_one = |steps: u32| {

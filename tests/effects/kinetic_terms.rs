@@ -1,4 +1,4 @@
-//! The bodies that a scene can choose from: each adds with the other effects, and is of its order.
+//! The library's kinetic terms: each adds with the other effects, and has its order.
 
 use checks::order;
 use checks::random::Random;
@@ -17,7 +17,7 @@ fn tensor() -> Inertia {
     Inertia::new(axes * principal * axes.transpose()).unwrap()
 }
 
-/// The sum and the declaration in one piece.
+/// The sum of a body and gravity moves as the top declared in one piece.
 #[test]
 fn body_and_gravity_are_the_top() {
     let (J, Gravity { m, g, rho, up }) = (tensor(), gravity());
@@ -30,7 +30,7 @@ fn body_and_gravity_are_the_top() {
     ];
     println!("{errors:?}");
     assert!(errors.iter().all(|&error| error < 1e-11), "{errors:?}");
-    // They are different methods, or the test would say nothing.
+    // The two kinetic terms make different steps, or the test would show nothing.
     assert!(apart(&cayley, &geodesic) > 1e-6);
 }
 
@@ -65,7 +65,8 @@ fn a_heavy_body_is_of_second_order() {
     assert_order(name, 2, (1.0, 1.0 / 100.0), |J| SixthOrderBody { J } + gravity);
 }
 
-/// With a rotor and drag the Newton system is a sum; all bodies do the same in the limit of small steps.
+/// Bodies add with a rotor and drag, whose terms are in the Newton system too; all kinetic terms agree in the limit of
+/// small steps.
 #[test]
 fn bodies_add_with_what_is_in_the_unknown() {
     let J = tensor();
@@ -82,7 +83,7 @@ fn bodies_add_with_what_is_in_the_unknown() {
     assert!(found.iter().all(|&error| error < 2e-3), "{found:?}");
 }
 
-/// 115° a step about a principal axis, where (3.13) has no solution beyond 90°.
+/// A body turns by 115° a step about a principal axis, where (3.13) has no solution beyond 90°.
 #[test]
 fn a_spin_may_turn_by_more_than_a_quarter_a_step() {
     fn turn<L: Regular<Scalar = f64, Group = SO3>>(scene: L) -> Option<f64> {
@@ -96,7 +97,7 @@ fn a_spin_may_turn_by_more_than_a_quarter_a_step() {
     let J = Inertia::from_principal_moments(moments).unwrap();
     let J_d = DiagonalNonstandardInertia::from_principal_moments(moments).unwrap();
     assert_eq!(turn(PrincipalBody { J_d }), None);
-    // p = Jθ/h, and (2/h) J tan(θ/2) (1 + tan²(θ/2)) in Cayley coordinates.
+    // The momentum is p = Jθ/h, and (2/h) J tan(θ/2) (1 + tan²(θ/2)) in Cayley coordinates.
     let tangent = (0.5 * turn(CayleyBody { J }).unwrap()).tan();
     assert!((2.0 * tangent * (1.0 + tangent * tangent) - 2.0).abs() < 1e-12, "{tangent}");
     let turns = [turn(GeodesicBody { J }), turn(FourthOrderBody { J }), turn(SixthOrderBody { J })];

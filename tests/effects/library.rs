@@ -1,4 +1,4 @@
-//! Each effect of the library against the physics that it stands for.
+//! Each effect of the library compared with its physics.
 
 use checks::random::Random;
 use liestep::effects::{Dipole, Drag, GravityGradient, Rotor, Spring, Torque};
@@ -13,7 +13,7 @@ fn body(moments: [f64; 3]) -> PrincipalBody {
     PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(moments.into()).unwrap() }
 }
 
-/// The state after so many steps of 0.01 s, and how far from its first value the axial momentum has been.
+/// The state after this number of steps of 0.01 s, and the largest change of the axial momentum.
 fn moved<L>(scene: L, count: usize) -> (StateOf<L>, f64)
 where
     L: Regular<Scalar = f64, Group = SO3> + AxiallyInvariant,
@@ -51,7 +51,7 @@ fn dipole_and_spring_are_weights() {
     }
 }
 
-/// The potentials as they are in a textbook, with the vectors in space.
+/// The library's potentials are those of a textbook, with the vectors in space.
 #[test]
 fn potentials_are_those_of_the_continuous_system() {
     let mut r = Random::new(6);
@@ -81,7 +81,7 @@ fn librations_in_the_gravity_gradient() {
     let moments = [1.0, 2.0, 2.5];
     let (GM, r, h, amplitude) = (7.0, 1.5_f64, 0.05, 1e-4);
     for axis in 0..3 {
-        // About one axis, between the two others; the lesser moment points at the mass.
+        // The libration is about one axis, between the two others; the axis of the lesser moment points to the mass.
         let (low, high) = if axis == 0 { (1, 2) } else { (0, 3 - axis) };
         let J = Inertia::from_principal_moments(moments.into()).unwrap();
         let direction = Vector3::ith(low, 1.0);
@@ -96,13 +96,13 @@ fn librations_in_the_gravity_gradient() {
             let angle = SO3::vee(&state.attitude().matrix())[axis];
             assert!((angle - expected).abs() < 1e-5 * amplitude, "{axis} {step}: {angle:e} {expected:e}");
         }
-        // The continuous frequency is another, so the test tells them apart.
+        // The continuous frequency differs enough for the test to distinguish both.
         assert!((discrete - omega) * h * 1000.0 > 0.01);
     }
 }
 
-/// Under a constant torque drag lets the body turn at `τ/c`, and the velocity that is read off its momentum is
-/// `(τ/c)(1 + ½ x y²/(1 + y²))`, as its page has it.
+/// A body with drag turns at `τ/c` under a constant torque, and the velocity computed from its momentum is
+/// `(τ/c)(1 + ½ x y²/(1 + y²))`, as the page of `Drag` has it.
 #[test]
 fn what_drag_shows_of_a_velocity() {
     let (h, tau) = (0.1, 0.01);

@@ -1,4 +1,4 @@
-//! Scenes: sums of Lagrangians and forces, the effects of the library, what changes during a run.
+//! Scenes: sums of Lagrangians and forces, the effects of the library, changes during a run.
 
 mod all_orders;
 mod changing_scenes;
@@ -40,7 +40,7 @@ fn moved<L: Regular<Scalar = f64, Group = SO3>>(scene: L, h: f64, steps: u64) ->
     state
 }
 
-/// How far attitude and momentum of two motions are apart.
+/// The distance of attitude and momentum of two motions.
 fn apart<A: Advected<SO3>, B: Advected<SO3>>(a: &Motion<SO3, A>, b: &Motion<SO3, B>) -> f64 {
     let attitude = (a.attitude().as_matrix() - b.attitude().as_matrix()).norm();
     attitude.max(relative(&a.momentum(), &b.momentum()))

@@ -1,4 +1,4 @@
-//! Bodies of several kinds, put at their places one by one: sums of terms whose unknown parts are at different bodies.
+//! Bodies of several kinds, placed one by one: sums of terms whose unknown parts belong to different bodies.
 
 use checks::structure::stages::{assert_stages, assert_step};
 use checks::structure::{System, norm};
@@ -37,7 +37,7 @@ fn turned<L: Regular<Scalar = f64, Group = [SO3; 2]>>(scene: L, rate: f64) -> [f
     turned
 }
 
-/// Spheres at one radian per second turn by what (3.13) makes of one radian, `θ` a step with `sin θ = hΩ`.
+/// Spheres at one radian per second turn as (3.13) makes a sphere turn, by `θ` a step with `sin θ = hΩ`.
 #[test]
 fn two_spheres_turn_alike() {
     let sphere = rigid([1.0; 3]);
@@ -68,20 +68,20 @@ fn a_fast_wheel_turns_as_its_kinetic_term_says() {
     }
 }
 
-/// Two bodies that would like to have their third axes alike, by a potential of both ends of a step.
+/// A potential that aligns the third axes of two bodies, at both ends of a step.
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(Q = F_2.seen_from(F_1)),
     l_d = 0.5 * h * k * (axis.dot(&(Q * axis)) + (F_1 * axis).dot(&(Q * (F_2 * axis)))),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Aligned {
+struct AxisAlignment {
     k: f64,
     axis: Vector3<f64>,
 }
 
-/// A solver of order eight at a tolerance of 1e-12 ends with this velocity; of the energy at the start a step of 2.5 ms keeps six
-/// digits.
+/// Two coupled bodies end with the velocity that a solver of order eight finds at a tolerance of 1e-12; a step of 2.5
+/// ms conserves six digits of the energy.
 #[test]
 fn two_coupled_bodies_move_as_by_a_solver() {
     fn end<L: Regular<Scalar = f64, Group = [SO3; 2]>>(scene: L) -> (f64, Vector3<f64>) {
@@ -93,7 +93,7 @@ fn two_coupled_bodies_move_as_by_a_solver() {
         (stepper.energy(&state), stepper.velocity(&state).0[0])
     }
     let (first, second, aligned) =
-        (rigid([3.0, 2.5, 2.0]), rigid([1.1, 0.9, 0.5]), Aligned { k: 3.0, axis: Vector3::z() });
+        (rigid([3.0, 2.5, 2.0]), rigid([1.1, 0.9, 0.5]), AxisAlignment { k: 3.0, axis: Vector3::z() });
     let between = Between::<0, 1, 2>::of([aligned]);
     let (one, other) = (On::<0, 2>::of([first]), On::<1, 2>::of([second]));
     let found =
@@ -106,8 +106,7 @@ fn two_coupled_bodies_move_as_by_a_solver() {
     }
 }
 
-/// The structure of a step whose terms are at different bodies, and of several kinds: the momenta at its ends are those of the
-/// Lagrangian.
+/// A step whose terms are on different bodies, and of several kinds, has the momenta of the Lagrangian at both ends.
 #[test]
 fn a_step_has_the_momenta_of_all_terms() {
     fn check<L: System + Clone>(scene: &L) {
@@ -124,7 +123,7 @@ fn a_step_has_the_momenta_of_all_terms() {
     );
 }
 
-/// A potential `½ k (3 − tr Q)²` of the mean `Q` of where one body sees the other at both ends of a step.
+/// A potential `½ k (3 − tr Q)²` of the mean `Q` of the relative configurations at both ends of a step.
 #[lagrangian(
     group(F_1 = SO3, F_2 = SO3),
     advected(Q = F_2.seen_from(F_1)),
@@ -135,7 +134,7 @@ struct Stiff {
     k: f64,
 }
 
-/// Bodies whose Newton systems have denominators cleared, in a row that is solved together.
+/// Bodies whose Newton systems have cleared denominators are coupled in a row that is solved together.
 #[test]
 fn bodies_with_cleared_denominators_are_coupled() {
     const { assert!(RigidBody::<f64>::DENOMINATORS == 1 && GeodesicBody::<f64>::DENOMINATORS == 0) };
@@ -146,8 +145,8 @@ fn bodies_with_cleared_denominators_are_coupled() {
     assert_step(&(coupling + Each::<3>::of([body])), &[1e-3, 0.1], 8);
 }
 
-/// Bodies that are read while the program runs have the denominators of their Newton systems as values: of two in one placement
-/// they differ, and another term has more, or none and joins the bodies.
+/// Bodies that are declared at run time have the denominators of their Newton systems as values: two in one placement
+/// have different ones, and another term has more, or none and couples the bodies.
 #[test]
 fn bodies_that_are_read_late_add_as_those_that_are_compiled() {
     fn end<L: Regular<Scalar = f64, Group = [SO3; 2]>>(scene: L) -> Bodies<Vector3<f64>, 2> {
@@ -215,8 +214,8 @@ fn conserved(stepper: &MultibodyStepper, state: &[f64]) -> Vec<f64> {
     kept
 }
 
-/// A hub and a rod of one metre on a ball joint, both free, for ten seconds: where they are, by how much the energy is off at the
-/// end, J, and by how much the momenta are.
+/// A hub and a rod of one metre on a ball joint move freely for ten seconds: the bodies at the end, and the errors of
+/// the energy, J, and of the momenta.
 fn hub_and_rod(make: impl Fn(&mut Multibody)) -> ([Body; 2], [f64; 2]) {
     let mut system = Multibody::new();
     make(&mut system);
@@ -233,7 +232,7 @@ fn hub_and_rod(make: impl Fn(&mut Multibody)) -> ([Body; 2], [f64; 2]) {
     ([0, 1].map(|body| stepper.attitude(&state, body)), [off[0], off[1..].iter().copied().fold(0.0, f64::max)])
 }
 
-/// Bodies on a joint are the sums of their terms in any order, and energy and momenta stay.
+/// Bodies on a joint are the sums of their terms in any order, and conserve energy and momenta.
 #[test]
 fn a_joint_holds_bodies_that_are_placed_one_by_one() {
     let J = NonstandardInertia::from_principal_moments(Vector3::new(1.1, 0.9, 0.5)).unwrap();
@@ -262,7 +261,7 @@ fn a_joint_holds_bodies_that_are_placed_one_by_one() {
         println!("{distance:e}, energy {energy:e}, momenta {momenta:e}");
         assert!(distance < 1e-10 && energy < 1e-3 && momenta < 1e-12);
     }
-    // Kinetic terms of three kinds, one of a kind on each body, are of one limit.
+    // Kinetic terms of three kinds, another one on each body, have one continuous limit.
     let geodesic = Geodesic { m: 1.0, J: thin.to_inertia() };
     let (bodies, [energy, momenta]) = hub_and_rod(|system| {
         system.body(Cayley { m: 2.0, J: J.to_inertia() });
@@ -297,7 +296,7 @@ fn a_fast_wheel_on_a_pin_turns_by_geodesics() {
     }
     assert!((turned - 500.0).abs() < 1e-9, "{turned}");
     assert!((stepper.attitude(&state, 0).0.as_matrix() - nalgebra::Matrix3::identity()).norm() < 1e-12);
-    // In joints no body turns by a right angle a step.
+    // A step that turns a body on a joint by a right angle is refused.
     let mut faster = stepper.start(&start, &[still, Vector6::z() * 1600.0]).unwrap();
     assert!(matches!(stepper.step(&mut faster), Err(StepError::UnsolvedBody { body: 1, .. })));
 }

@@ -1,4 +1,4 @@
-//! Scenes are sums: a sum is the same integrator as the Lagrangian written in one piece, and costs what it holds.
+//! Scenes are sums: a sum is the same integrator as the Lagrangian written in one piece, at the cost of its terms.
 
 use checks::random::Random;
 use checks::structure::stages::assert_stages;
@@ -22,14 +22,14 @@ struct Quartic {
     k: f64,
 }
 
-/// The kinetic energy of a ball, in half angles: its Newton system has no denominator taken out.
+/// The kinetic energy of a ball, in half angles: its Newton system has no cleared denominator.
 #[lagrangian(group = SO3, l_d = -(2.0 * k / h) * (0.25 + 0.25 * F.trace()).ln())]
 #[derive(Clone, Copy, Debug)]
 struct Ball {
     k: f64,
 }
 
-/// The sum of all effects that are used here, in one declaration.
+/// The sum of all effects used in these tests, in one declaration.
 #[lagrangian(
     group = SO3,
     advected(w = up, n = direction, b = field, a = anchor),
@@ -115,13 +115,14 @@ fn gravity(top: &HeavyTop) -> Gravity {
     Gravity { m: top.m, g: top.g, rho: top.rho, up: top.up }
 }
 
-/// Asymmetric, with the centre of mass off the axes; the second inertia isn't diagonal.
+/// A body plus gravity is the heavy top, asymmetric and with the centre of mass off the axes; the second inertia isn't
+/// diagonal.
 #[test]
 fn body_and_gravity_are_the_heavy_top() {
     let top = HeavyTop::asymmetric();
     let (one, sum) =
         (moved(top.clone(), 0.01, 10_000), moved(PrincipalBody { J_d: top.J_d } + gravity(&top), 0.01, 10_000));
-    // The operations are the same, so it isn't only to rounding.
+    // The steps agree to the bit, as the operations are the same.
     assert_eq!((one.attitude(), one.momentum()), (sum.attitude(), sum.momentum()));
     let full = FullTop::in_axes(&top, Random::new(4).rotation().as_matrix());
     let weight = Gravity { m: full.m, g: full.g, rho: full.rho, up: full.up };
@@ -129,7 +130,7 @@ fn body_and_gravity_are_the_heavy_top() {
     assert_eq!((one.attitude(), one.momentum()), (sum.attitude(), sum.momentum()));
 }
 
-/// A sum is explained by its terms, in their order.
+/// The derivation of a sum is the texts of its terms, in their order.
 #[test]
 fn derivations_add() {
     fn derivation<E: Effect>(effect: &E) -> String {
@@ -141,7 +142,7 @@ fn derivations_add() {
     assert_eq!(derivation(&(body + gravity + rotor)), alone.join("\n"));
 }
 
-/// Every momentum map, the Jacobian, the limit and the energy of a sum, against the declaration in one piece.
+/// Every momentum map, the Jacobian, the limit and the energy of a sum agree with the declaration in one piece.
 #[test]
 fn derived_terms_add() {
     let mut r = Random::new(1);
@@ -186,7 +187,7 @@ fn newton_systems_of_three_scales_add() {
     }
 }
 
-/// Terms with Newton systems of three scales, in five orders.
+/// Sums of terms whose Newton systems have three scales, in five orders, differ by rounding.
 #[test]
 fn the_order_of_terms_only_rounds_differently() {
     let mut r = Random::new(2);
@@ -212,7 +213,7 @@ fn the_order_of_terms_only_rounds_differently() {
     }
 }
 
-/// What a term adds to a scene is known when the crate is built.
+/// The size of a scene's state is known when the crate is built.
 #[test]
 fn a_scene_holds_what_its_terms_name() {
     const fn size<E: Effect<Group = SO3>>() -> usize {
@@ -222,7 +223,7 @@ fn a_scene_holds_what_its_terms_name() {
         size_of::<State<SO3, (A::Advected, B::Advected)>>()
     }
     const VECTOR: usize = 3 * size_of::<f64>();
-    // The time of steps of another length, and what rounding has left behind of it.
+    // The size of the time of steps of other lengths, and of its rounding error.
     const ELAPSED: usize = 2 * size_of::<f64>();
     const {
         assert!(size::<RigidBody>() == size_of::<[f64; 9]>() + 4 * VECTOR + size_of::<u64>() + ELAPSED);
@@ -232,7 +233,7 @@ fn a_scene_holds_what_its_terms_name() {
         assert!(size_of_sum::<RigidBody, Gravity>() == size::<RigidBody>() + VECTOR);
         assert!(size_of_sum::<RigidBody, Gravity>() == size::<FullTop>());
         assert!(size_of_sum::<Gravity, Dipole>() == size::<RigidBody>() + 2 * VECTOR);
-        // Potentials kick and leave the Newton system alone; a rotor has a part in it and doesn't kick.
+        // Potentials have kicks and no part in the Newton system; a rotor has a part in it and no kick.
         let kicks = [<Gravity>::PARTS, <GravityGradient>::PARTS, <Dipole>::PARTS, <Spring>::PARTS];
         let mut index = 0;
         while index < kicks.len() {

@@ -70,7 +70,7 @@ fn motions_are_isometries() {
     assert!((advected - space.inverse_transform_point(&p)).norm() < 1e-14);
 }
 
-/// The change of a small step has all its digits: it isn't a difference of positions.
+/// The change of a vector by a small step has all its digits: it isn't a difference of positions.
 #[test]
 fn small_changes_are_exact() {
     let (rotation, shift) = (UnitQuaternion::identity(), nalgebra::Vector3::new(1e-12, 0.0, 0.0));

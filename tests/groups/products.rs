@@ -18,7 +18,7 @@ type Product = (SO3, SE2);
 
 /// The elements of the product as matrices with two blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Embedded(Matrix6<f64>);
+struct BlockMatrix(Matrix6<f64>);
 
 fn blocks(matrix: &Matrix6<f64>) -> (Matrix3<f64>, Matrix3<f64>) {
     (matrix.fixed_view::<3, 3>(0, 0).into_owned(), matrix.fixed_view::<3, 3>(3, 3).into_owned())
@@ -31,7 +31,7 @@ fn matrix((first, second): &(Matrix3<f64>, Matrix3<f64>)) -> Matrix6<f64> {
     matrix
 }
 
-impl Embedded {
+impl BlockMatrix {
     fn product(&self) -> Product {
         Product::from_matrix_unchecked(blocks(&self.0))
     }
@@ -41,7 +41,7 @@ impl Embedded {
     }
 }
 
-impl LieGroup for Embedded {
+impl LieGroup for BlockMatrix {
     type Scalar = f64;
     type Vector = Vector6<f64>;
     type Matrix = Matrix6<f64>;
@@ -126,12 +126,12 @@ impl LieGroup for Embedded {
 /// The product's own Cayley map.
 struct ByFactors;
 
-impl Retraction<Embedded> for ByFactors {
+impl Retraction<BlockMatrix> for ByFactors {
     fn increment(xi: &Vector6<f64>) -> Matrix6<f64> {
         matrix(&<CayleyRetraction as Retraction<Product>>::increment(xi))
     }
 
-    fn local_coordinates(element: &Embedded) -> Option<Vector6<f64>> {
+    fn local_coordinates(element: &BlockMatrix) -> Option<Vector6<f64>> {
         <CayleyRetraction as Retraction<Product>>::local_coordinates(&element.product())
     }
 
@@ -145,11 +145,11 @@ impl Retraction<Embedded> for ByFactors {
 }
 
 mod group {
-    liestep::lie_group_laws!(super::Embedded);
+    liestep::lie_group_laws!(super::BlockMatrix);
 }
 
 mod retraction {
-    liestep::retraction_laws!(super::Embedded, super::ByFactors);
+    liestep::retraction_laws!(super::BlockMatrix, super::ByFactors);
 }
 
 /// Each body is tested separately for nearness to the identity.
@@ -251,13 +251,13 @@ fn entries(of: &impl Entries<f64>) -> Vec<f64> {
 }
 
 /// The value in the frame of matrices with this number of factors and their inverses, from that in space.
-type Typed<'a, const K: usize> = dyn Fn(&[f64], &[Matrix3<f64>; K], &[Matrix3<f64>; K]) -> Vec<f64> + 'a;
+type TypedValue<'a, const K: usize> = dyn Fn(&[f64], &[Matrix3<f64>; K], &[Matrix3<f64>; K]) -> Vec<f64> + 'a;
 
 /// Compares all functions of a parameter with `typed`, its value in the frame of these matrices and inverses.
 fn assert_seen<G, A, const K: usize>(
     together: fn([Matrix3<f64>; K]) -> G::Matrix,
     element: fn(&mut Random) -> [Matrix3<f64>; K],
-    typed: &Typed<'_, K>,
+    typed: &TypedValue<'_, K>,
 ) where
     G: LieGroup<Scalar = f64>,
     A: Advected<G>,
@@ -317,7 +317,7 @@ fn written(matrices: impl IntoIterator<Item = Matrix3<f64>>) -> Vec<f64> {
 /// The parameters of four bodies, two of them with matrices that aren't orthogonal, in either order.
 #[test]
 fn what_bodies_of_a_product_see() {
-    fn of_four<A: Advected<Four>>(typed: &Typed<'_, 4>) {
+    fn of_four<A: Advected<Four>>(typed: &TypedValue<'_, 4>) {
         let element = |random: &mut Random| {
             let mut motion = || random.element::<SE2, 3, 3>().matrix();
             let (second, fourth) = (motion(), motion());
@@ -344,7 +344,7 @@ fn what_bodies_of_a_product_see() {
 #[test]
 fn what_bodies_of_an_array_see() {
     type At<P> = <P as Places<Alike>>::Advected;
-    fn of_three<A: Advected<[SO3; 3]>>(typed: &Typed<'_, 3>) {
+    fn of_three<A: Advected<[SO3; 3]>>(typed: &TypedValue<'_, 3>) {
         let element = |random: &mut Random| [(); 3].map(|()| rotation(random));
         assert_seen::<[SO3; 3], A, 3>(|all| all, element, typed);
     }

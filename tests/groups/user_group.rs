@@ -15,7 +15,7 @@ mod density {
 struct Density(f64);
 
 impl Advected<Affine> for Density {
-    /// The map `f⁻¹` stretches by `1/a`.
+    /// The inverse map `f⁻¹` stretches by `1/a`.
     fn seen_from(&self, attitude: &Affine) -> Self {
         Self(self.0 * attitude.matrix().m11)
     }

@@ -1,5 +1,5 @@
-//! The rows of the table: what is measured and every bound are those of `cargo run -p liestep-hard-cases --example hard-cases`, which prints
-//! them beside what other methods do.
+//! The rows of the table of hard cases as tests, with the bounds of
+//! `cargo run -p liestep-hard-cases --example hard-cases`, which prints them beside other methods.
 
 use cases::report::assert_met;
 use cases::row::Effort;
@@ -14,7 +14,7 @@ macro_rules! rows {
             }
         )+
 
-        /// Rows are tests here or in `tests/long`, and none is left out.
+        /// Every row is a test, here or in `tests/long`.
         #[test]
         fn all_rows_are_tests() {
             let short: Vec<_> = rows::ALL.map(|row| row.0).into_iter().filter(|id| !rows::LONG.contains(id)).collect();

@@ -36,17 +36,17 @@ use kernel::{Effort, Failure, Group, Kernel, arguments, instructions, measure};
 /// A batch is well below a slice of the scheduler's time.
 const EFFORT: Effort = Effort { batch: 500, rounds: 4_000, counted: 2_000 };
 
-type Running<T> = (Stepper<Top<T>>, State<SO3<T>, Vector3<T>>);
+type TopRun<T> = (Stepper<Top<T>>, State<SO3<T>, Vector3<T>>);
 
 /// The tops from `first` on, one in each lane.
-fn lanes<T: Real<Element: Real + RealField>>(first: usize) -> Running<T> {
+fn lanes<T: Real<Element: Real + RealField>>(first: usize) -> TopRun<T> {
     let (wide, attitude, velocity) = eight_tops::lanes::<T>(first);
     let stepper = Stepper::new(wide, nalgebra::convert(0.01)).expect("a usable step");
     let state = stepper.start(attitude, velocity).expect("a usable start");
     (stepper, state)
 }
 
-fn single<E: Real + RealField>(number: usize) -> Running<E> {
+fn single<E: Real + RealField>(number: usize) -> TopRun<E> {
     let (top, attitude, velocity) = top(number);
     let stepper = Stepper::new(top, nalgebra::convert(0.01)).expect("a usable step");
     let state = stepper.start(attitude, velocity).expect("a usable start");
@@ -54,7 +54,7 @@ fn single<E: Real + RealField>(number: usize) -> Running<E> {
 }
 
 #[inline(never)]
-fn run<T: Real, const N: usize>(ensemble: &mut [Running<T>; N], steps: u32) {
+fn run<T: Real, const N: usize>(ensemble: &mut [TopRun<T>; N], steps: u32) {
     for _ in 0..steps {
         for (stepper, state) in &mut *ensemble {
             stepper.step(state).expect("a solvable step");
@@ -67,8 +67,8 @@ fn assert_same<T, const LANES: usize, const N: usize>()
 where
     T: Real<Element: Real + RealField>,
 {
-    let mut wide: [Running<T>; N] = core::array::from_fn(|k| lanes(k * LANES));
-    let mut scalars: [Running<T::Element>; TOPS] = core::array::from_fn(single);
+    let mut wide: [TopRun<T>; N] = core::array::from_fn(|k| lanes(k * LANES));
+    let mut scalars: [TopRun<T::Element>; TOPS] = core::array::from_fn(single);
     run(&mut wide, 1000);
     run(&mut scalars, 1000);
     for (number, (_, scalar)) in scalars.iter().enumerate() {
@@ -81,10 +81,10 @@ where
 /// The eight tops as `N` ensembles of this number of lanes.
 fn tops<T: Real<Element: Real + RealField> + 'static, const N: usize>(
     name: &str,
-    each: fn(usize) -> Running<T>,
+    each: fn(usize) -> TopRun<T>,
 ) -> Kernel {
     Kernel::new(name, move || {
-        let mut ensemble: [Running<T>; N] = core::array::from_fn(|k| each(k * TOPS / N));
+        let mut ensemble: [TopRun<T>; N] = core::array::from_fn(|k| each(k * TOPS / N));
         Ok(move |steps| {
             run(black_box(&mut ensemble), steps);
             Ok(0)

@@ -258,7 +258,7 @@ fn times_of(program: &Path) -> Result<Vec<(f64, String)>, Failure> {
     Ok(lines.lines().filter_map(line).collect())
 }
 
-/// Compares this program with itself compiled for this machine; fails if that is slower.
+/// Compares this program with itself compiled for this machine's processor; fails if that is slower.
 fn native(flags: &[String]) -> Result<(), Failure> {
     let flags = format!("-C target-cpu=native {}", flags.join(" "));
     let place = built("vectors", &["--target-dir", "target/native"], Some(&flags))?;

@@ -59,16 +59,16 @@ fn a_field_under_two_names() {
     },
 )]
 #[derive(Clone, Debug)]
-struct Attracted<T: RealField + Copy> {
+struct AttractedBody<T: RealField + Copy> {
     J: Matrix3<T>,
     k: T,
     p: Point2<T>,
     centre: Point2<T>,
 }
 
-fn attracted<T: RealField + Copy>(varied: Option<(usize, T)>) -> Attracted<T> {
+fn attracted<T: RealField + Copy>(varied: Option<(usize, T)>) -> AttractedBody<T> {
     let mut n = Numbers::new(varied);
-    Attracted {
+    AttractedBody {
         J: n.symmetric(&J_D),
         k: n.number(0.4),
         p: Point2::new(n.number(0.3), n.number(-0.2)),
@@ -78,7 +78,7 @@ fn attracted<T: RealField + Copy>(varied: Option<(usize, T)>) -> Attracted<T> {
 
 #[test]
 fn a_point_and_closed_lets() {
-    assert!(Attracted::<f64>::DERIVATION.contains("kept closed"), "{}", Attracted::<f64>::DERIVATION);
+    assert!(AttractedBody::<f64>::DERIVATION.contains("kept closed"), "{}", AttractedBody::<f64>::DERIVATION);
     let stepper = Stepper::new(attracted::<f64>(None), STEP).expect("a stepper");
     let dual = |number: Option<usize>| Stepper::new(attracted::<Dual64>(unit(number)), STEP.into()).expect("a stepper");
     assert_linearised(&stepper, dual);

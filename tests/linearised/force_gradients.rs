@@ -13,9 +13,9 @@ use nalgebra::{Matrix3, RealField, Rotation3, Vector3};
 use num_dual::{Dual64, HyperHyperDual64};
 
 use super::dual::{STEP, assert_linearised};
-use super::scenes::{Held, MOMENTS, Numbers, exact_flow, gravity, heavy, held, unit};
+use super::scenes::{MOMENTS, Numbers, SpringTop, exact_flow, gravity, heavy, held, unit};
 
-type Several<T> = Sum<Held<T>, Dipole<T>>;
+type Several<T> = Sum<SpringTop<T>, Dipole<T>>;
 
 /// The parameters of the scene below; those of the body are the first nine.
 const PARAMETERS: usize = 45;

@@ -30,7 +30,7 @@ where
         kind.of_scalars(&mut || {
             place += 1;
             let scalar = if is_force { 0.0 } else { *own.next().expect("as many scalars") };
-            // A long step has the impulse of a short one.
+            // A long step gets the impulse of a short one, so that it stays solvable.
             let size = if is_force { 0.1 / stepper.step_size().abs() } else { 0.2 };
             if is_force || place <= varied { scalar + random.signed() * size } else { scalar }
         })

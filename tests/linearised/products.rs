@@ -69,7 +69,7 @@ fn links(varied: Option<(usize, f64)>) -> Links {
     },
 )]
 #[derive(Clone, Debug)]
-struct Carried {
+struct SupportedBody {
     J: Matrix3<f64>,
     m: f64,
     J_w: f64,
@@ -79,9 +79,9 @@ struct Carried {
     up: Vector3<f64>,
 }
 
-fn carried(varied: Option<(usize, f64)>) -> Carried {
+fn carried(varied: Option<(usize, f64)>) -> SupportedBody {
     let mut n = Numbers::new(varied);
-    Carried {
+    SupportedBody {
         J: n.symmetric(&(J_D * 2.0)),
         m: n.number(0.8),
         // A smaller moment has larger fifth derivatives: at 0.3 the differences have errors of 4e-10.

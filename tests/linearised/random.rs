@@ -43,7 +43,7 @@ macro_rules! family {
             }
 
             impl<T: RealField + Copy> Terms<T> {
-                /// The numbers of the seed, one of which may have a derivative.
+                /// The parameters of a random scene, one of which may have a derivative.
                 fn random(seed: u64, varied: Option<(usize, T)>) -> Self {
                     let mut random = Random::new(seed);
                     let root: SMatrix<f64, $n, $n> = random.sample();

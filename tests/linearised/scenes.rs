@@ -10,7 +10,7 @@ use num_dual::Dual64;
 
 use super::dual::{STEP, assert_linearised};
 
-/// The parameters, one of which may have a derivative; the entries of a symmetric matrix vary together.
+/// The parameters of the scene, one of which may have a derivative; the entries of a symmetric matrix vary together.
 pub(crate) struct Numbers<T> {
     next: usize,
     varied: Option<(usize, T)>,
@@ -54,10 +54,10 @@ pub(crate) fn unit(number: Option<usize>) -> Option<(usize, Dual64)> {
 
 pub(crate) const J_D: Matrix3<f64> = Matrix3::new(2.0, 0.2, -0.1, 0.2, 1.6, 0.3, -0.1, 0.3, 2.4);
 
-pub(crate) type Held<T> = Sum<Sum<Sum<RigidBody<T>, Gravity<T>>, Spring<T>>, GravityGradient<T>>;
+pub(crate) type SpringTop<T> = Sum<Sum<Sum<RigidBody<T>, Gravity<T>>, Spring<T>>, GravityGradient<T>>;
 
 /// A body under three potentials.
-pub(crate) fn held<T: RealField + Copy>(n: &mut Numbers<T>) -> Held<T> {
+pub(crate) fn held<T: RealField + Copy>(n: &mut Numbers<T>) -> SpringTop<T> {
     let body = RigidBody { J_d: NonstandardInertia::new(n.symmetric(&J_D)).expect("a body") };
     let gravity = gravity(n);
     let spring = Spring {
@@ -76,9 +76,9 @@ fn inertia<T: RealField + Copy>(n: &mut Numbers<T>) -> Inertia<T> {
     Inertia::new(n.symmetric(&J)).expect("a body")
 }
 
-type Damped<T> = Sum<Sum<Held<T>, Rotor<T>>, Drag<T>>;
+type DampedTop<T> = Sum<Sum<SpringTop<T>, Rotor<T>>, Drag<T>>;
 
-fn damped<T: RealField + Copy>(varied: Option<(usize, T)>) -> Damped<T> {
+fn damped<T: RealField + Copy>(varied: Option<(usize, T)>) -> DampedTop<T> {
     let mut n = Numbers::new(varied);
     let held = held(&mut n);
     let rotor = Rotor { spin: n.vector(0.3, -0.2, 0.5) };
@@ -290,7 +290,7 @@ fn the_tangent_of_another_plan_is_refused() {
     let _ = split.linearised().expect("derivatives").step(&mut state, &mut tangent);
 }
 
-/// For a step of zero all derivatives with respect to parameters are zero.
+/// A step of zero length has zero derivatives with respect to all parameters.
 #[test]
 fn without_a_step_nothing_moves() {
     let stepper = Stepper::new(top::<f64>(None), 0.0).expect("a stepper");

@@ -188,7 +188,7 @@ fn assert_unchanged<P: Linearisable<Top>>(stepper: &Stepper<Top, P>, impulse: f6
     for _ in 0..3 {
         linear.step(&mut state, &mut tangent).expect("a step");
     }
-    // Half of the impulse comes before the step.
+    // A forced step has half of its impulse before it.
     stepper.step_forced(&mut state, &(Vector3::z() * (impulse / stepper.step_size()))).expect("a step");
     let (before, columns) = (state, tangent.columns().collect::<Vec<_>>());
     let error = linear.step(&mut state, &mut tangent).expect_err("it is too fast");

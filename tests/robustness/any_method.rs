@@ -249,7 +249,7 @@ where
     assert_eq!(format!("{plain:?}"), format!("{other:?}"), "{name}");
 }
 
-/// Checks it also with compensation, inside and outside of the remedy.
+/// Checks a plan with compensated sums too, inside and outside of the remedy.
 fn assert_everything<S, P>(name: &str, stepper: &Stepper<S, P>, own: &mut Vec<Checkpoint<f64>>)
 where
     S: DiscreteLagrangian<Scalar = f64, Group = SO3> + liestep::mechanics::Regular + Clone + 'static,

@@ -158,7 +158,7 @@ fn p7_what_is_no_state_of_the_scene_is_refused() {
     assert!(matches!(scaled, CheckpointError::NotInGroup { defect } if defect > 1e-3), "{scaled}");
     let elsewhere = refused(|value| value["advected"] = json!([0.0, 0.0, 1.0]));
     assert!(matches!(elsewhere, CheckpointError::NotAdvected { distance } if distance > 1e-3), "{elsewhere}");
-    // One changed digit that only the digest can detect.
+    // A change of one digit, which only the digest can detect.
     for name in ["momentum", "kept"] {
         let mut value = serde_json::to_value(&stored).unwrap();
         value[name][0] = json!(f64::from_bits(value[name][0].as_f64().unwrap().to_bits() ^ 1));
@@ -193,7 +193,7 @@ fn p7_damaged_files_are_refused() {
     for end in 0..binary.len() {
         assert!(postcard::from_bytes::<Checkpoint<f64>>(&binary[..end]).is_err(), "binary up to {end}");
     }
-    // A text truncated within its last line may still be valid; then its digest isn't.
+    // A text truncated within its last line may still be valid TOML, but its digest isn't valid.
     for end in 0..toml.trim_end().len() {
         let read = toml::from_str::<Checkpoint<f64>>(&toml[..end]);
         assert!(read.is_err() || stepper.resume(&read.unwrap()).is_err(), "TOML up to {end}");

@@ -257,9 +257,9 @@ impl<I: Integrator> Integrator for Bare<'_, I> {
 }
 
 /// The end of a run in stretches, its iterations or its error, and the steps at which it was interrupted.
-type Shown<M> = (M, Result<u64, StepError>, Vec<u64>);
+type RunEnd<M> = (M, Result<u64, StepError>, Vec<u64>);
 
-fn shown<I: Integrator>(integrator: &I, start: &I::State, plan: &[u64]) -> Shown<I::Motion> {
+fn shown<I: Integrator>(integrator: &I, start: &I::State, plan: &[u64]) -> RunEnd<I::Motion> {
     let (mut state, mut calls) = (start.clone(), Vec::new());
     let (first, mut rest) = (plan[0], plan[1..].iter().copied());
     let made = integrator.run_stretches(&mut state, first, &mut |motion, _| {

@@ -76,7 +76,7 @@ fn a_run_that_fails_keeps_what_it_has() {
     let steps = (0..100).take_while(|_| stepper.step(&mut single).is_ok()).count();
     assert!((5..100).contains(&steps), "{steps}");
     let written = Rc::new(RefCell::new(Vec::new()));
-    let mut recorder = Recorder::new(&stepper, Csv::new(Shared(written.clone())));
+    let mut recorder = Recorder::new(&stepper, Csv::new(FileBytes(written.clone())));
     let error = stepper.observed(&mut state).every(4, |now| recorder.record(now)).steps(1_000_000).unwrap_err();
     assert!(matches!(error, RunError::Step { cause: StepError::BeyondSolvable { .. }, .. }), "{error}");
     assert_eq!(usize::try_from(state.steps()).unwrap(), steps);
@@ -86,9 +86,9 @@ fn a_run_that_fails_keeps_what_it_has() {
     assert_eq!(rows, steps / 4 + 1);
 }
 
-struct Shared(Rc<RefCell<Vec<u8>>>);
+struct FileBytes(Rc<RefCell<Vec<u8>>>);
 
-impl Write for Shared {
+impl Write for FileBytes {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.0.borrow_mut().write(bytes)
     }
@@ -98,7 +98,7 @@ impl Write for Shared {
     }
 }
 
-/// A full disk.
+/// A writer to a full disk.
 struct Full;
 
 impl Write for Full {

@@ -11,7 +11,7 @@ struct Body {
     A: nalgebra::Matrix3<f64>,
 }
 
-/// Such a body on SE(2) with a symmetric matrix.
+/// A planar body on SE(2) with a symmetric matrix that may be singular.
 #[lagrangian(group = SE2, l_d = ((F - I) * (A + A.transpose()) * (F - I).transpose()).trace() / (2.0 * h))]
 struct Planar {
     A: Matrix3<f64>,
@@ -28,7 +28,7 @@ struct Point {
     advected(w = up),
     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - h * k / (m - 1.0) * w.dot(&rho),
 )]
-struct Divided {
+struct InfiniteConstant {
     J_d: NonstandardInertia,
     k: f64,
     m: f64,
@@ -36,7 +36,7 @@ struct Divided {
     up: Vector3<f64>,
 }
 
-/// The message, or an empty text.
+/// The message of a refused scene, or an empty text.
 macro_rules! refusal {
     ($scene:expr) => {
         Stepper::new($scene, 0.01).err().map(|error| error.to_string()).unwrap_or_default()
@@ -69,7 +69,7 @@ fn a_negative_kinetic_part() {
 fn a_constant_that_is_not_finite() {
     let divided = |m| {
         let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0, 2.0, 2.0)).unwrap();
-        Divided { J_d, k: 1.0, m, rho: Vector3::z(), up: Vector3::z() }
+        InfiniteConstant { J_d, k: 1.0, m, rho: Vector3::z(), up: Vector3::z() }
     };
     assert_eq!(refusal!(divided(2.0)), "");
     assert!(refusal!(divided(1.0)).contains("constant"), "{}", refusal!(divided(1.0)));

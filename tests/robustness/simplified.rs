@@ -2,7 +2,7 @@
 //! suffices.
 
 use checks::any_scalar::Top;
-use checks::solvers::{Counted, jacobians};
+use checks::solvers::{JacobianCounter, jacobians};
 use declarations::{FourthOrderTop, SixthOrderTop};
 use liestep::mechanics::{DiscreteLagrangian, Regular};
 use liestep::motion::DiscreteLiePoisson;
@@ -24,7 +24,7 @@ fn top<T: RealField + Copy>(moments: [f64; 3]) -> Top<T> {
 /// for `f64`, and for numbers with a derivative, which are solved by Newton's iteration alone. Also the number of steps
 /// for which one Jacobian was enough.
 fn missing(moments: [f64; 3], h: f64, speed: f64) -> ([f64; 2], u32) {
-    let plain = DiscreteLiePoisson::new(Counted(top::<f64>(moments)), h).unwrap();
+    let plain = DiscreteLiePoisson::new(JacobianCounter(top::<f64>(moments)), h).unwrap();
     let dual = DiscreteLiePoisson::new(top::<Dual64>(moments), h.into()).unwrap();
     let stepper = Stepper::new(top::<f64>(moments), h).unwrap();
     let tilt = UnitQuaternion::from_scaled_axis(Vector3::x() * 0.8);
@@ -107,7 +107,7 @@ fn higher_orders_end_at_the_level_of_rounding() {
 #[test]
 fn near_the_fold_every_iteration_has_its_jacobian() {
     let body = Top { weight: 0.0, ..top::<f64>([3.0, 3.0, 4.0]) };
-    let flow = DiscreteLiePoisson::new(Counted(body), 1.0).unwrap();
+    let flow = DiscreteLiePoisson::new(JacobianCounter(body), 1.0).unwrap();
     for (angle, expected) in [(0.5_f64, 1), (1.0, 1), (1.49, 1), (1.52, 2), (1.55, 2)] {
         // The momentum is `p = J sin θ` for a step of one second.
         let momentum = Vector3::z() * (4.0 * angle.sin());

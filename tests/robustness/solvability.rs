@@ -146,7 +146,7 @@ fn s1_a_lost_jacobian_is_no_solution() {
     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * k * (1.0 / w.dot(&n) + 1.0 / w.dot(&(F * n))),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Repelled {
+struct RepelledBody {
     J_d: NonstandardInertia,
     k: f64,
     n: Vector3<f64>,
@@ -158,8 +158,8 @@ struct Repelled {
 fn an_infinite_torque_is_said() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap();
     // The vectors are at right angles to the last digit, and no component of their product is zero.
-    let scene = Repelled { J_d, k: 1.0, n: Vector3::new(1.0, -1.0, 1.0), up: Vector3::new(1.0, 1.0, 0.0) };
-    let kick = Repelled::kick_before(&scene.constants(0.01), &scene.up);
+    let scene = RepelledBody { J_d, k: 1.0, n: Vector3::new(1.0, -1.0, 1.0), up: Vector3::new(1.0, 1.0, 0.0) };
+    let kick = RepelledBody::kick_before(&scene.constants(0.01), &scene.up);
     assert!(kick.iter().all(|torque| torque.is_infinite()), "{kick}");
     let stepper = Stepper::new(scene, 0.01).unwrap();
     let mut state = stepper.start(SO3::identity(), Vector3::z()).unwrap();

@@ -16,7 +16,8 @@ const STEPS: u32 = 2000;
 /// The bound is some thousands of roundings, which accumulate like a random walk.
 const ROUNDING: f64 = 1e-12;
 
-/// Checks the invariants; `count` is the dimension of the symmetry of the spatial parameters.
+/// Checks that the invariants of a system are conserved; `count` is the dimension of the symmetry of the spatial
+/// parameters.
 fn assert_conserved<L: System + Clone>(system: &L, start: Start<L::Group>, count: usize) {
     assert_eq!(symmetries(system).len(), count);
     let flow = DiscreteLiePoisson::new(system.clone(), STEP).unwrap();
@@ -46,7 +47,8 @@ conserved! {
     "The rotations of space, which keep its metric.": elastic_flow on_sl2 = 1;
 }
 
-/// The magnet has no symmetry in general, and turns about the field if its gradient is invariant under them, too.
+/// The magnet has no symmetry in general, and one under turns about the field if the field's gradient is invariant
+/// under these, too.
 #[test]
 fn magnet() {
     let mut magnet = samples::magnet();

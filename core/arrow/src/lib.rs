@@ -41,7 +41,7 @@ pub struct ArrowStream<W: Write> {
 }
 
 enum Stage<W: Write> {
-    /// The writer before the columns are known.
+    /// The writer, before the table's columns are known.
     Before(W),
     Writing(Box<StreamWriter<W>>, SchemaRef),
     Done(W),
@@ -172,9 +172,9 @@ mod tests {
 
     /// The bytes that have reached the file.
     #[derive(Clone, Default)]
-    struct Shared(Arc<Mutex<Vec<u8>>>);
+    struct FileBytes(Arc<Mutex<Vec<u8>>>);
 
-    impl Write for Shared {
+    impl Write for FileBytes {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
             self.0.lock().unwrap().write(bytes)
         }
@@ -187,7 +187,7 @@ mod tests {
     /// Every block is flushed, as the process may be killed.
     #[test]
     fn each_block_is_there_before_the_end() {
-        let file = Shared::default();
+        let file = FileBytes::default();
         let mut stream = ArrowStream::new(io::BufWriter::with_capacity(1 << 20, file.clone()));
         stream.begin(&[Column { name: "t".to_owned(), unit: "s".to_owned() }]).unwrap();
         for block in 1..4 {

@@ -14,7 +14,7 @@ pub(crate) enum Failure {
     Command(String),
     /// 3: some of several runs stopped.
     Runs(String),
-    /// 4.
+    /// 4: a result couldn't be written or printed.
     Output(String),
 }
 

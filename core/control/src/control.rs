@@ -77,8 +77,8 @@ impl<'a, M: Plant> Control<'a, M> {
         }
     }
 
-    /// Selects the inputs of each step: the scalars in these places of an input like this one, in the order of
-    /// [`Input::scalars`](liestep::gradients::Input::scalars), each once; the others stay as they are.
+    /// Selects the inputs of each step: the scalars in these places of an input like this one, each once, in the order
+    /// of [`Input::scalars`](liestep::gradients::Input::scalars); the others stay as they are.
     #[must_use]
     pub fn input(self, like: M::Input, places: impl IntoIterator<Item = usize>) -> Self {
         Self { like, places: places.into_iter().collect(), ..self }

@@ -162,7 +162,7 @@ impl<'a, M: Plant> Estimate<'a, M> {
         let (mut damping, mut iterations) = (0.0, 0);
         let (verdict, covariance, step) = loop {
             let Some((stages, value)) = self.value(&trial) else { return Err(ControlError::Unusable("derivative")) };
-            let seen = Seen::new(&value);
+            let seen = Directions::new(&value);
             let step = seen.decrease(&value).sqrt();
             if step <= self.tolerance {
                 let verdict = seen.unseen.clone().map_or(Verdict::Converged, |direction| Verdict::Unseen { direction });
@@ -288,7 +288,7 @@ impl<'a, M: Plant> Estimate<'a, M> {
         &self,
         trial: &Trial<M>,
         stages: &[Stage],
-        (value, seen): (&Value, &Seen),
+        (value, seen): (&Value, &Directions),
         damping: &mut f64,
     ) -> Option<Trial<M>> {
         // At the level of rounding the step is taken without a decrease.
@@ -311,7 +311,7 @@ impl<'a, M: Plant> Estimate<'a, M> {
 }
 
 /// The directions of the start and the constants, each with the information of the readings on it.
-struct Seen {
+struct Directions {
     /// The lengths that scale the second derivative along each coordinate to one.
     lengths: DVector<f64>,
     /// The eigenvalues, zero if a direction isn't determined, and eigenvectors of the scaled second derivatives.
@@ -320,7 +320,7 @@ struct Seen {
     unseen: Option<Vec<f64>>,
 }
 
-impl Seen {
+impl Directions {
     fn new(value: &Value) -> Self {
         let lengths = value.square.diagonal().map(|entry| if entry > 0.0 { entry.sqrt().recip() } else { 1.0 });
         let scaled =

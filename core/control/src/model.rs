@@ -21,14 +21,15 @@ pub(crate) struct Model<M: Plant> {
     pub(crate) stepper: M,
     /// The number of constants of a motion that are part of its state: a free duration, or the unknowns of an estimate.
     pub(crate) constants: usize,
-    /// A small change of each constant that steps depend on, and the steppers with it and with its opposite.
+    /// Differences of the constants that steps depend on: a small change of each, and the steppers with it and with its
+    /// opposite.
     pub(crate) beside: Vec<(f64, [M; 2])>,
     pub(crate) like: M::Input,
     pub(crate) places: Vec<usize>,
 }
 
-/// The state beside this one, by its displacement and the change of its momentum. `None` if the stepper can't start
-/// there.
+/// The state displaced from this one, by a displacement of its attitude and a change of its momentum. `None` if the
+/// stepper can't start there.
 pub(crate) fn displaced<M: Plant>(stepper: &M, state: &M::State, x: &DVector<f64>) -> Option<M::State> {
     stepper.displaced(state, &x.as_slice()[..2 * stepper.dimension()])
 }
@@ -147,7 +148,7 @@ impl<M: Plant> Model<M> {
             }
             Some(found)
         };
-        // The force causes this momentum in one step.
+        // The momentum that the force causes in one step.
         let momentum = COARSE * self.momentum(stage);
         let force = momentum / stage.by_input.rows(dimension, dimension).amax();
         let mut hessian = DMatrix::zeros(states + inputs, states + inputs);

@@ -19,7 +19,7 @@ pub(crate) struct Stage {
     /// The gradients `a` and `b` of the cost.
     pub(crate) state_gradient: DVector<f64>,
     pub(crate) input_gradient: DVector<f64>,
-    /// The second derivatives by state and input, in this order.
+    /// The second derivatives of the cost by state and input, in this order.
     pub(crate) hessian: DMatrix<f64>,
     /// The inputs that have no room to change.
     pub(crate) fixed: Vec<usize>,

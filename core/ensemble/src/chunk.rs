@@ -190,7 +190,8 @@ impl<M: Integrator> Ensemble<M> {
         Course { rows: self.no_rows(), watches, reduced: Vec::new(), passed, ended, end: Ok(None) }
     }
 
-    /// Records the crossings up to here, which belong to the next row. Crossings after a member leaves are dropped.
+    /// Records the crossings of sections up to this time, which belong to the next row. Crossings after a member leaves
+    /// are dropped.
     fn look_at_sections<'a>(
         &self,
         stepper: &M,
@@ -236,7 +237,7 @@ impl<M: Integrator> Ensemble<M> {
         if rows.step.last() == Some(&steps) {
             rows.status.pop();
             rows.status.push(status);
-            // Crossings found here are not later than that row.
+            // Crossings found after the last row was written are not later than that row.
             let last = rows.member.len() - 1;
             rows.crossings.iter_mut().flat_map(|crossings| &mut crossings.row).for_each(|row| *row = last.min(*row));
             return;
@@ -256,7 +257,7 @@ struct Tally {
 /// The result of a member so far.
 struct Course<M: Integrator> {
     rows: Rows,
-    /// One for each section.
+    /// The searches for crossings, one for each section.
     watches: Vec<Watch<M::State>>,
     /// The values that sections reduce, with the number of the reduction.
     reduced: Vec<(usize, f64)>,
@@ -264,6 +265,6 @@ struct Course<M: Integrator> {
     passed: Vec<(u64, f64)>,
     /// The state at which a section ended the member: it left, or failed, as the function had no value.
     ended: Option<(M::State, Option<Failure>)>,
-    /// The values of its end that are reduced; `None` if the member left.
+    /// The values at the member's end that are reduced; `None` if the member left.
     end: Result<Option<Vec<f64>>, MemberFailure>,
 }

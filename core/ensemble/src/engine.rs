@@ -100,7 +100,7 @@ impl Engine for Local<'_> {
             || has_failed.load(Ordering::Relaxed) || self.stop.is_some_and(|stop| stop.load(Ordering::Relaxed));
         let make = |&chunk: &u64| {
             let made = if is_stopped() { Ok(()) } else { make(chunk, &is_stopped) };
-            // The error stops the other workers within their chunks.
+            // An error stops the other workers within their chunks.
             made.inspect_err(|_| has_failed.store(true, Ordering::Relaxed))
         };
         if self.threads == 1 {

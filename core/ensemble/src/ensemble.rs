@@ -260,7 +260,7 @@ impl<M: Integrator> Ensemble<M> {
         });
         let ratio = OF_A_STEP / cost.unwrap_or(OF_A_STEP).max(1.0);
         let second = (STEPS[usize::from(self.takes_turns)] * ratio / self.steps.max(1) as f64) as u64;
-        // Chunks for 64 workers, and in lanes at least a 32nd of a second each, beside which a file is cheap.
+        // Chunks are for 64 workers, and in lanes take at least a 32nd of a second each, beside which a file is cheap.
         let least = if self.takes_turns { 1 } else { (second / 32).max(LANES as u64) };
         let shared = self.members.div_ceil(CHUNKS).max(least).min(second);
         // Very many members go to a few thousand files.

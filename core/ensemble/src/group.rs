@@ -11,7 +11,7 @@ use crate::section::{LANES, Section};
 pub(crate) trait Group<M: Integrator> {
     fn run(&mut self, steps: u64);
     fn state(&self, member: usize) -> M::State;
-    /// The state before the last run, if that was of one step.
+    /// The state of a member before the last run, if that was of one step.
     fn before(&self, member: usize) -> M::State;
     /// The values of a section's function, if the section computes them in lanes.
     fn values(&self, section: &Section<M>) -> Option<[f64; LANES]>;
@@ -24,13 +24,13 @@ pub(crate) type Grouping<M> = fn(&[Start<M>]) -> Vec<(Box<dyn Group<M>>, usize)>
 /// A member's stepper and its initial state.
 pub(crate) type Start<M> = (M, <M as Integrator>::State);
 
-/// Members in lanes.
-struct Together<M: Batchable<AutoF64x8>> {
+/// Members stepped together in lanes.
+struct LaneGroup<M: Batchable<AutoF64x8>> {
     batch: Batch<AutoF64x8, M>,
     before: <<M as InLanes<AutoF64x8>>::Together as Integrator>::State,
 }
 
-impl<M: Batchable<AutoF64x8> + 'static> Group<M> for Together<M> {
+impl<M: Batchable<AutoF64x8> + 'static> Group<M> for LaneGroup<M> {
     fn run(&mut self, steps: u64) {
         if steps == 1 {
             self.before = self.batch.states().clone();
@@ -60,13 +60,13 @@ pub(crate) fn in_lanes<M: Batchable<AutoF64x8> + 'static>(mut left: &[Start<M>])
     let mut groups: Vec<(Box<dyn Group<M>>, usize)> = Vec::new();
     while let Some((batch, count)) = Batch::<AutoF64x8, M>::of_first(&left[..left.len().min(LANES)]) {
         let before = batch.states().clone();
-        groups.push((Box::new(Together { batch, before }), count));
+        groups.push((Box::new(LaneGroup { batch, before }), count));
         left = &left[count..];
     }
     groups
 }
 
-/// One member.
+/// A member stepped alone.
 struct SingleMember<M: Integrator> {
     stepper: M,
     state: M::State,

@@ -91,7 +91,7 @@ impl Quantiles {
 pub struct Moments {
     /// The number of finite values.
     pub count: u64,
-    /// The number of other values.
+    /// The number of values that aren't finite.
     pub not_finite: u64,
     /// The mean of the finite values; zero without any.
     pub mean: f64,
@@ -156,7 +156,7 @@ pub struct Histogram {
     pub counts: Vec<u64>,
     /// The count of values below the range.
     pub below: u64,
-    /// The count of values from its end on.
+    /// The count of values at the end of the range and above.
     pub above: u64,
     /// The count of NaNs.
     pub not_a_number: u64,
@@ -186,7 +186,7 @@ impl Histogram {
 }
 
 impl Reduction {
-    /// The mistake in its parameters, if there is one.
+    /// The mistake in a reduction's parameters, if there is one.
     pub(crate) fn mistake(&self) -> Option<String> {
         let Self::Histogram { range, bins } = self else { return None };
         if *bins == 0 {

@@ -45,7 +45,7 @@ pub struct Progress {
     pub done: u64,
     /// All chunks.
     pub chunks: u64,
-    /// The estimated time for the others, by the time of this run's chunks.
+    /// The estimated time for the missing chunks, by the time of this run's chunks.
     pub remaining: Duration,
 }
 
@@ -112,7 +112,7 @@ impl<M: Integrator> Ensemble<M> {
             }
         };
         let make = |chunk: u64, is_stopped: &dyn Fn() -> bool| {
-            // Another share may have written it by now.
+            // A process of another share may have written the chunk by now.
             if others.contains(&chunk) && store.has(chunk) {
                 return Ok(());
             }

@@ -56,7 +56,7 @@ type Find<M> = fn(&Section<M>, &M, &<M as Integrator>::State, u64) -> Result<Vec
 pub struct Section<M: Integrator> {
     event: Event,
     function: Box<Value<M>>,
-    /// The function in lanes, a [`Together`].
+    /// The function in lanes, a [`LaneFunction`].
     together: Option<Box<dyn Any + Send + Sync>>,
     only_first: bool,
     pub(crate) ends: bool,
@@ -68,7 +68,7 @@ pub struct Section<M: Integrator> {
 }
 
 /// A section's function of members in lanes.
-type Together<M> = Box<dyn Fn(&Moment<'_, <M as InLanes<AutoF64x8>>::Together>) -> AutoF64x8 + Send + Sync>;
+type LaneFunction<M> = Box<dyn Fn(&Moment<'_, <M as InLanes<AutoF64x8>>::Together>) -> AutoF64x8 + Send + Sync>;
 
 /// The recorded values of one crossing: for the columns, and for the reductions.
 pub(crate) struct Crossing {
@@ -92,7 +92,7 @@ pub(crate) struct Watch<S> {
 pub(crate) struct Place<'a, S> {
     /// The function's value after the step, if it was computed in lanes.
     pub(crate) value: Option<f64>,
-    /// The state before the step; the present one if that was checked.
+    /// The state before the step, or the present one if that was checked already.
     pub(crate) before: &'a dyn Fn() -> S,
     pub(crate) now: &'a dyn Fn() -> S,
 }
@@ -135,7 +135,7 @@ impl<M: Integrator> Section<M> {
     where
         M: Batchable<AutoF64x8> + 'static,
     {
-        let function: Together<M> = Box::new(function);
+        let function: LaneFunction<M> = Box::new(function);
         self.together = Some(Box::new(function));
         self
     }
@@ -200,11 +200,11 @@ impl<M: Integrator> Section<M> {
     where
         M: Batchable<AutoF64x8> + 'static,
     {
-        let values = self.together.as_ref()?.downcast_ref::<Together<M>>()?(all);
+        let values = self.together.as_ref()?.downcast_ref::<LaneFunction<M>>()?(all);
         Some(core::array::from_fn(|lane| values.extract(lane)))
     }
 
-    /// The crossings up to here that haven't been found yet; `is_last` if no further check follows.
+    /// The crossings up to this state that haven't been found yet; `is_last` if no further check follows.
     ///
     /// Steps with a crossing are repeated by the member's own stepper.
     pub(crate) fn look(
@@ -250,7 +250,7 @@ impl<M: Integrator> Section<M> {
         }
     }
 
-    /// The values of all its functions at one time.
+    /// The values of all functions of the section at one time.
     pub(crate) fn values(&self, now: &Moment<'_, M>) -> Vec<f64> {
         let Crossing { columns, reduced, .. } = self.at(now);
         [vec![(self.function)(now)], columns, reduced].concat()

@@ -176,7 +176,7 @@ pub struct Shard {
 /// The key of the schema's metadata that stores everything but the rows. A single key, as the order of several isn't
 /// fixed.
 const KEY: &str = "liestep-ensemble";
-/// The first line of it, a comment of TOML; another layout has another number.
+/// The first line of that text, a comment of TOML; another layout has another number.
 const FORMAT: &str = "# format 3";
 
 impl Shard {

@@ -69,7 +69,7 @@ pub enum StoreError {
         "{path} is of another plan (other members, steps, columns, or a changed program or library); take another folder, or delete that file"
     )]
     Foreign {
-        /// One of these shards.
+        /// One of the foreign shards.
         path: PathBuf,
     },
     /// A chunk has two whole files, which differ: its members aren't reproducible.
@@ -211,7 +211,7 @@ impl Store {
                 // A process whose clock is ahead has swept the file as one of a killed run.
                 Err(error) if error.kind() == ErrorKind::NotFound && tries < MOST_TRIES => {}
                 Err(error) => {
-                    // A part of a file would take up a full disk.
+                    // A partial file would go on filling a full disk.
                     let _ = fs::remove_file(&beside);
                     return Err(StoreError::Io { path: beside, error });
                 }
@@ -345,7 +345,7 @@ impl Store {
             let mut aside = path.clone().into_os_string();
             aside.push(".damaged");
             match fs::rename(path, aside) {
-                // Another process has renamed it before.
+                // Another process has renamed the file before.
                 Err(error) if error.kind() == ErrorKind::NotFound => {}
                 renamed => renamed.map_err(|error| StoreError::Io { path: path.clone(), error })?,
             }

@@ -17,7 +17,7 @@ pub type Top = Stepper<Sum<PrincipalBody, Gravity>>;
 pub type State = <Top as liestep::motion::Integrator>::State;
 
 /// A top with random moments and spin. Member 3 is no body, and members 5, 15, 25 … fall too fast for the step.
-pub fn top(member: &Member<'_>) -> Made {
+pub fn top(member: &Member<'_>) -> MemberStart {
     let third = if member.number() == 3 { 9.0 } else { member.normal("J_3", 4.0, 0.1) };
     let body =
         PrincipalBody { J_d: DiagonalNonstandardInertia::from_principal_moments(Vector3::new(3.0, 3.1, third))? };
@@ -29,10 +29,10 @@ pub fn top(member: &Member<'_>) -> Made {
 }
 
 /// A member, if it can be constructed.
-pub type Made = Result<(Top, State), Failure>;
+pub type MemberStart = Result<(Top, State), Failure>;
 
 /// The members of [`tops`] as constructed.
-pub fn made(members: u64) -> Vec<(u64, Made)> {
+pub fn made(members: u64) -> Vec<(u64, MemberStart)> {
     // An ensemble of no steps passes its members on.
     let starts = Arc::new(Mutex::new(Vec::new()));
     let kept = Arc::clone(&starts);

@@ -167,9 +167,9 @@ fn sums_are_those_of_the_files() {
 }
 
 /// An engine that computes nothing, and records the number of chunks of each call.
-struct Told(Mutex<Vec<usize>>);
+struct ChunkCounter(Mutex<Vec<usize>>);
 
-impl Engine for Told {
+impl Engine for ChunkCounter {
     fn distribute(&self, missing: &[u64], _: &MakeChunk<'_>, _: &(dyn Fn() + Sync)) -> Result<(), StoreError> {
         self.0.lock().unwrap().push(missing.len());
         Ok(())
@@ -222,7 +222,7 @@ fn damaged_files_are_named_and_made_anew() {
     assert!(matches!(&refused, StoreError::Foreign { path } if *path == to), "{refused}");
     assert!(to.exists());
     // Other processes that wait for numbers get an empty list.
-    let told = Told(Mutex::new(Vec::new()));
+    let told = ChunkCounter(Mutex::new(Vec::new()));
     assert!(ensemble.run(&told, &store).is_err());
     assert_eq!(*told.0.lock().unwrap(), [0]);
     let named: Vec<Fault> = store.shards(ensemble.fingerprint()).unwrap().filter_map(Result::err).collect();
@@ -320,7 +320,7 @@ fn another_plan_has_another_fingerprint() {
     assert_unlike(&plans);
 }
 
-/// No two have one fingerprint.
+/// Asserts that no two plans have one fingerprint.
 fn assert_unlike(plans: &[Ensemble<Top>]) {
     let mut fingerprints: Vec<u64> = plans.iter().map(Ensemble::fingerprint).collect();
     fingerprints.sort_unstable();

@@ -27,10 +27,10 @@ fn kept(now: &Moment<'_, Top>) -> [f64; 2] {
 }
 
 /// Members, and the bits of their recorded values.
-type Found = Vec<(u64, Vec<u64>)>;
+type MemberBits = Vec<(u64, Vec<u64>)>;
 
-fn found(shards: &[Shard], section: usize) -> Found {
-    let of_shard = |shard: &Shard| -> Found {
+fn found(shards: &[Shard], section: usize) -> MemberBits {
+    let of_shard = |shard: &Shard| -> MemberBits {
         let crossings = &shard.rows.crossings[section];
         let kept = |place: usize| crossings.columns.iter().map(|column| column[place].to_bits()).collect();
         crossings.row.iter().enumerate().map(|(place, row)| (shard.rows.member[*row], kept(place))).collect()
@@ -44,7 +44,7 @@ fn chunks(ensemble: &Ensemble<Top>) -> Vec<Shard> {
 
 #[test]
 fn crossings_are_those_of_each_member_alone() {
-    let mut expected: [Found; 2] = [vec![], vec![]];
+    let mut expected: [MemberBits; 2] = [vec![], vec![]];
     for (member, made) in made(MEMBERS) {
         let Ok((stepper, mut state)) = made else { continue };
         let [mut first, mut second] = [vec![], vec![]];
@@ -125,7 +125,7 @@ fn a_function_without_a_value_stops_its_member() {
         Section::new(event, function).keep(["t"], |now| [now.time()])
     };
     let undisturbed = tops(12, STEPS).every(1).chunk(0, &|| false).unwrap();
-    // Recorded velocities meet that condition, too.
+    // Recorded velocities meet the condition of the event, too.
     let spins = Section::new(Event::crossing(), |_: &Moment<'_, Top>| 1.0);
     let watched = tops(12, STEPS).every(1).section(spins).keep(["w"], |run| [run.stepper.velocity(run.state).z]);
     let watched = watched.chunk(0, &|| false).unwrap().rows;
@@ -159,7 +159,7 @@ fn a_function_without_a_value_stops_its_member() {
         let steps: Vec<u64> = shard.outcome.failures.iter().map(|failed| failed.steps).collect();
         assert_eq!((shard.outcome.finished, steps), (0, vec![40, 40]));
     }
-    // No value from the start on.
+    // A function that has no value from the start on.
     let never = Section::new(Event::crossing(), |_: &Moment<'_, Top>| f64::NAN);
     let shard = tops(2, STEPS).section(never).chunk(0, &|| false).unwrap();
     assert_eq!((shard.outcome.finished, shard.outcome.failures.len(), shard.outcome.failures[0].steps), (0, 2, 0));

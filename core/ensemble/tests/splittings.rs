@@ -91,7 +91,7 @@ where
 #[test]
 fn symmetric_bodies_in_lanes_move_as_alone() {
     let split = |scheme| move |top: Top| Stepper::split(top.scene, 0.05, SymmetricBody::new(&top.inertia)?, scheme);
-    // The turn about the axis is taken out, or isn't.
+    // The turn about the third axis is merged with others for a weight on the axis, and isn't for one beside it.
     for beside in [0.0, 0.2] {
         assert_same("Strang", true, beside, split(SplittingScheme::STRANG));
         assert_same("Nyström", true, beside, split(SplittingScheme::NYSTROM_11));

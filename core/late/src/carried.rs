@@ -1,4 +1,4 @@
-//! Advected parameters as a type describes them.
+//! The group actions on advected parameters, listed from the parameters' types.
 
 use liestep::groups::{
     Configuration, ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor, Relative, SeenFrom,

@@ -40,7 +40,7 @@ impl Deref for Declaration {
 /// A value in space.
 #[derive(Clone, Copy)]
 pub(crate) enum InSpace {
-    /// That of the parameter with this number.
+    /// The value of the parameter with this number.
     Parameter(usize),
     /// The unit vector with this number.
     Direction(usize),
@@ -61,7 +61,7 @@ impl<C> Ready<C> {
         self.arrays >> array as u16 & 1 == 1
     }
 
-    /// Whether it reads constants alone: its outputs don't change.
+    /// Whether the program reads constants alone: its outputs don't change.
     pub(crate) const fn reads_constants_alone(&self) -> bool {
         self.arrays & !(1 << Array::Constants as u16) == 0
     }
@@ -193,7 +193,7 @@ impl Declaration {
             return Err(LateError::TooMany(MOST));
         }
         let declaration = Self::of(make()?);
-        // A second thread that has derived it drops its own.
+        // If two threads have derived a declaration at once, the first result is stored and the second dropped.
         Ok(known().entry(name.to_owned()).or_insert_with(|| Box::leak(Box::new(declaration))))
     }
 

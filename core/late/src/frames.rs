@@ -1,16 +1,17 @@
-//! The carriage of a sum: all that its terms carry, one behind the other; or the directions of space, of which all vectors
-//! are made.
+//! The advected parameters of a sum: those of its terms, one after the other; or the directions of space, of which all
+//! vectors are linear combinations.
 
 use liestep_derivation::{Action, Carried, StagedDeclaration};
 
-/// A number that a term carries: the sum of those of the carriage at these places, each times a parameter's number, where
-/// there is one, which stands at the first place among the parameters and at the second among the constants of a step.
+/// A number of a term's advected parameters as a linear combination: the sum of the sum's numbers at these places, each
+/// times a parameter's number, if there is one, whose first place is among the parameters and whose second is among the
+/// constants of a step.
 pub(crate) type Combined = Vec<(Option<[usize; 2]>, usize)>;
 
-/// All that a sum carries.
+/// The advected parameters of a sum, with the weights of its vectors.
 pub(crate) struct Carriage {
     pub(crate) carried: Vec<Carried>,
-    /// The parameters' numbers that a step finds among its constants, the first of them at `constants`.
+    /// Numbers of parameters that a step has among its constants, the first of them at `constants`.
     pub(crate) weights: Vec<usize>,
     constants: usize,
     in_frames: bool,
@@ -20,19 +21,20 @@ fn length(carried: &Carried) -> usize {
     carried.shape.0 * carried.shape.1
 }
 
-/// The directions of space as a factor sees them, `g^T e_1`, `g^T e_2` and so on.
+/// The directions of space in a factor's frame, `g^T e_1`, `g^T e_2` and so on.
 const fn direction(factor: usize, size: usize) -> Carried {
     Carried { field: None, action: Action::Covector(factor), shape: (size, 1) }
 }
 
-/// Whether the value in space is a parameter's, and not the identity.
+/// Whether the value in space is that of a parameter, and not the identity.
 const fn is_own(carried: &Carried) -> bool {
     carried.field.is_some() && !matches!(carried.action, Action::Covector(_))
 }
 
 impl Carriage {
-    /// Empty; or with the directions of space of each factor that a vector is seen from, and with each configuration once.
-    /// The first directions stand before the configurations, and the others behind, as types of one vector begin.
+    /// No parameters, or the directions of space in the frame of each factor that advects a vector, and each
+    /// configuration once. The first directions stand before the configurations, and the others behind, as types of one
+    /// vector begin.
     pub(crate) fn of(terms: &[&StagedDeclaration], in_frames: bool, constants: usize) -> Self {
         let mut carriage = Self { carried: Vec::new(), weights: Vec::new(), constants, in_frames };
         if !in_frames {
@@ -62,12 +64,12 @@ impl Carriage {
         carriage
     }
 
-    /// How many numbers there are.
+    /// The number of numbers of all advected parameters.
     pub(crate) fn numbers(&self) -> usize {
         self.carried.iter().map(length).sum()
     }
 
-    /// The first numbers of all that are alike.
+    /// The first numbers of all parameters that equal this one.
     fn places(&self, alike: &Carried) -> Vec<usize> {
         let mut first = 0;
         let all = self.carried.iter().map(|one| {
@@ -77,7 +79,8 @@ impl Carriage {
         all.filter(|(one, _)| *one == alike).map(|(_, first)| first).collect()
     }
 
-    /// The numbers that a term carries, whose parameters begin at this field and at this number among those of all.
+    /// The advected parameters of a term as combinations of the sum's; the term's own parameters begin at this field,
+    /// and their numbers at this one.
     pub(crate) fn take(&mut self, staged: &StagedDeclaration, fields: usize, numbers: usize) -> Vec<Combined> {
         let mut combined = Vec::new();
         for (at, one) in staged.carried.iter().enumerate() {
@@ -89,7 +92,7 @@ impl Carriage {
                 continue;
             }
             let Some(field) = one.field else {
-                // Configurations are there once, and a term that is a sum may have directions of its own.
+                // Configurations occur once, and a term that is a sum may have directions of its own.
                 let number = staged.carried[..at].iter().filter(|other| *other == one).count();
                 let alike = self.places(one);
                 let first = alike.get(number).or(alike.first()).copied().unwrap_or(0);

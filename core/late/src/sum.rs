@@ -1,4 +1,4 @@
-//! Several declarations in one: programs that add what theirs compute.
+//! A sum of declarations as one declaration, whose programs add the outputs of the terms' programs.
 
 use std::collections::HashMap;
 
@@ -8,14 +8,14 @@ use liestep_derivation::{Array, Parameter, Program, Role, Source, StagedDeclarat
 use crate::error::LateError;
 use crate::frames::{Carriage, Combined};
 
-/// A term, and where its numbers begin among those of all.
+/// A term of a sum, with the places of its numbers among those of all terms.
 struct Part<'a> {
     staged: &'a StagedDeclaration,
     parameters: usize,
     constants: usize,
-    /// Each number that it carries, by those that the sum does.
+    /// Each number of the term's advected parameters, as a combination of the sum's.
     carried: Vec<Combined>,
-    /// The right side is that of one term, and zero that of the others.
+    /// Whether the term's system has the right side: that of one term has, and that of the others has zero.
     has_target: bool,
 }
 
@@ -48,12 +48,12 @@ impl Part<'_> {
         Value::Input(Source::new(source.array, first + source.at))
     }
 
-    /// A program of a step, which reads its constants.
+    /// Appends a program of a step, which reads its constants.
     fn append(&self, words: &mut Words, program: &Program) -> Vec<Value> {
         self.append_by(words, program, Weights::Constants, self.has_target)
     }
 
-    /// A program that reads the parameters.
+    /// Appends a program that reads the parameters.
     fn append_alone(&self, words: &mut Words, program: &Program) -> Vec<Value> {
         self.append_by(words, program, Weights::Parameters, self.has_target)
     }
@@ -88,7 +88,7 @@ impl Part<'_> {
     }
 }
 
-/// Components of covectors.
+/// The number of a covector's components.
 fn dimension(staged: &StagedDeclaration) -> usize {
     staged.programs.kick_before.outputs.len()
 }
@@ -115,7 +115,7 @@ fn raised(words: &mut Words, system: Vec<Value>, size: usize, power: u32) -> Vec
     raised
 }
 
-/// What is computed for each part, added.
+/// The sum of the outputs that a function computes for each part.
 fn sum_of<P>(parts: impl IntoIterator<Item = P>, mut of: impl FnMut(P, &mut Words) -> Vec<Value>) -> Program {
     let mut words = Words::default();
     let mut sum: Option<Vec<Value>> = None;
@@ -126,7 +126,7 @@ fn sum_of<P>(parts: impl IntoIterator<Item = P>, mut of: impl FnMut(P, &mut Word
     words.program(&sum.unwrap_or_default())
 }
 
-/// Residual and Jacobian of kinetic parts, rotors and forces, all with the unknown in them.
+/// Residual and Jacobian of the terms with an unknown part: kinetic ones, rotors and forces.
 fn system(solved: &[&Part<'_>], outputs: usize) -> Program {
     let (mut words, mut sum, mut power) = (Words::default(), Vec::new(), 0);
     for part in solved {
@@ -137,7 +137,7 @@ fn system(solved: &[&Part<'_>], outputs: usize) -> Program {
         sum = if part.has_target {
             one
         } else {
-            // What is added up so far is multiplied as one.
+            // The sum of the terms before is multiplied as one.
             let before = raised(&mut words, sum, size, both - power);
             words.added(&before, &one)
         };
@@ -187,7 +187,7 @@ fn programs(parts: &[Part<'_>], weights: &[usize]) -> Stages<Program> {
     }
 }
 
-/// The derivatives by the place, added; behind them those by the numbers that the sum carries, of which there are so many.
+/// The sums of the derivatives by the position, followed by those by the numbers of the sum's advected parameters.
 fn derivatives(parts: &[Part<'_>], carried: usize) -> Option<[Program; 4]> {
     let all = parts.iter().map(|part| Some((part, part.staged.derivatives.as_ref()?)));
     let all = all.collect::<Option<Vec<_>>>()?;
@@ -196,7 +196,7 @@ fn derivatives(parts: &[Part<'_>], carried: usize) -> Option<[Program; 4]> {
         let (mut words, mut sum) = (Words::default(), Vec::new());
         let mut behind = vec![Value::ZERO; carried * of_number];
         for (part, programs) in &all {
-            // The weights are those of all terms.
+            // The weights are parameters of the whole sum.
             let mut one = part.append_by(&mut words, &programs[at], Weights::Parameters, true);
             let numbers = one.split_off(of_place.min(one.len()));
             for (own, combined) in numbers.chunks(of_number.max(1)).zip(&part.carried) {
@@ -214,7 +214,7 @@ fn derivatives(parts: &[Part<'_>], carried: usize) -> Option<[Program; 4]> {
     Some([of(0, usize::MAX, 0), of(1, usize::MAX, 0), of(2, size, 1), of(3, 0, 2 * size)])
 }
 
-/// The sum of several, which carries the directions of space once where this is wished.
+/// The sum of several declarations, with the directions of space in place of vectors if `in_frames`.
 pub(crate) fn summed(terms: &[&StagedDeclaration], in_frames: bool) -> Result<StagedDeclaration, LateError> {
     let first = *terms.first().ok_or(LateError::Nothing)?;
     if let Some(other) = terms.iter().find(|staged| staged.factors != first.factors) {

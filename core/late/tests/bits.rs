@@ -1,5 +1,5 @@
-//! A declaration that is read makes the steps of the one that is compiled, to the bit: all of `examples/declarations`
-//! and all effects of the library, each by the text that the macro stores.
+//! Declarations read at run time make the steps of compiled ones, to the bit: all of `examples/declarations` and all
+//! effects of the library, each by the text that the macro stores.
 
 #[path = "common/same.rs"]
 mod same;
@@ -211,7 +211,7 @@ fn a_pace() {
     as_compiled! { PacedTop { J weight rho up energy } }
 }
 
-/// Sums of a body and effects that are both read: their values determine which of them has an unknown part.
+/// Sums of a body and effects that are both read at run time: their values determine which of them has an unknown part.
 #[test]
 fn sums_of_what_is_read() {
     let (body, drag) = (random!(1, RigidBody { J_d }), random!(2, Drag { c J }));
@@ -291,7 +291,7 @@ fn sums_in_one_program() {
     );
 }
 
-/// All vectors are made of the three directions of space: the same steps, and the same derivatives by those.
+/// A sum by the directions of space makes the same steps, and has the derivatives by these directions.
 #[test]
 fn a_sum_in_frames() {
     type Frame = (Vector3<f64>, Vector3<f64>, Vector3<f64>);
@@ -337,7 +337,7 @@ fn a_sum_in_frames() {
             assert!((chain - found).norm() < 1e-11, "{number}");
         }
     });
-    // A sum of such a sum, and the C of its step.
+    // The sum of a sum by directions, and the C code of its step.
     let twice = Declaration::sum_in_frames(&[declaration, terms[1]]).expect("a sum");
     let values = [numbers(&sum), numbers(&gravity)].concat();
     let twice = Late::<SO3, Frame, WithKinetic>::of(twice).and_then(|late| late.with_all(&values)).expect("numbers");
@@ -369,7 +369,7 @@ where
     let (matrix, right_side) = effect.adjoint_system(at, &p);
     let (by_place, by_advected) = effect.adjoint_gradient(at, [&u, &p], &mut |_, _| {});
     [matrix * u, right_side, by_place].into_iter().for_each(&mut add);
-    // Numbers that nothing depends on may be visited or left out.
+    // Derivatives by numbers without effect may be visited or left out.
     let mut sum = Vector::<E>::zero();
     effect.by_advected(at, &mut |number, start, end| {
         let number = 1.5_f64.powi(i32::try_from(number).unwrap());
@@ -436,7 +436,7 @@ fn specialised_programs_are_shorter() {
     Interpreter::run(&code, &[], given, &mut constants);
     let lengths = [programs, &specialised(programs, &constants)].map(|all| all.newton_system.operations.len());
     println!("{} operations an iteration, specialised {}", lengths[0], lengths[1]);
-    // Three of them are products of the right-hand side.
+    // Three of the operations are products of the right-hand side.
     assert!(lengths[0] >= 90 + 3 && lengths[1] <= 61 + 3, "{lengths:?}");
     let (general, specialised) = (after(late.clone()), after(late.specialised()));
     assert!((general - specialised).norm() < 1e-13 * general.norm(), "{general} {specialised}");

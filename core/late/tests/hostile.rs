@@ -148,7 +148,7 @@ fn what_takes_too_long_is_given_up() {
     }
 }
 
-/// Missing functions of a higher order are reported by their names.
+/// Functions of a higher order that the library lacks are reported by their names.
 #[test]
 fn missing_functions_are_told() {
     for function in [Function::Stumpff(11), Function::Stumpff(0), Function::LogRatio(7)] {

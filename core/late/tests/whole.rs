@@ -1,5 +1,5 @@
-//! Whole steps on groups that are a part of the text: order, momentum in space and the group's relation; compositions,
-//! substeps and prescribed values as the typed ones; errors.
+//! Whole steps on groups that a text declares: order, momentum in space and the group's relation; compositions,
+//! substeps and prescribed values as by typed steppers; errors.
 
 #[path = "whole/tangent.rs"]
 mod tangent;
@@ -206,7 +206,7 @@ fn values_are_prescribed_for_a_step() {
     assert_eq!((whole.step_with(&mut state, &wrong), state), (Err(error), before));
 }
 
-/// Steppers with other numbers share the code, and are those that are made anew.
+/// Steppers with other numbers share the code, and make the steps of new steppers with these numbers.
 #[test]
 fn numbers_and_steps_are_replaced() {
     let whole = whole(0.02, "step");

@@ -174,7 +174,7 @@ fn what_has_no_step_in_c_is_told() {
     for text in [liestep::effects::Gravity::<f64>::DECLARATION, liestep::effects::Drag::<f64>::DECLARATION] {
         assert!(matches!(refused(text), Some(LateError::Step(StepRefusal::NoKinetic))), "{text}");
     }
-    // Their functions are those of the logarithm.
+    // The expressions contain the functions of the logarithm.
     for text in [LogTop::DECLARATION, SixthOrderTop::DECLARATION] {
         assert!(matches!(refused(text), Some(LateError::Function(_))), "{text}");
     }

@@ -52,7 +52,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// The declaration compiled, and read in each way.
+/// Kernels of a declaration: compiled, and read at run time in each way.
 fn kernels<S>(scene: S) -> Result<[Kernel; 6], Failure>
 where
     S: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone + 'static,

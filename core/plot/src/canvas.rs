@@ -9,7 +9,7 @@ pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 /// Drawing into a string fails only for an impossible layout.
 pub type PlotResult<T = ()> = Result<T, Box<dyn std::error::Error>>;
 
-/// The units in a pixel: the back end draws on whole units, and two in a pixel keep lines smooth.
+/// The units in a pixel: the drawing library places points on whole units, and two in a pixel keep lines smooth.
 pub(super) const UNITS: u32 = 2;
 
 /// A number of pixels in the units of the drawing.

@@ -36,7 +36,7 @@ impl std::error::Error for CannotWrite {
 impl Output {
     /// Creates the folder and tries to write there, so that a long run doesn't fail at its end.
     pub fn new(folder: PathBuf) -> Result<Self, CannotWrite> {
-        // Other processes may try it, too.
+        // Other processes may try the same folder, so that the file's name has the process' number.
         let probe = folder.join(format!(".writable-{}", process::id()));
         fs::create_dir_all(&folder)
             .and_then(|()| fs::write(&probe, ""))
@@ -121,7 +121,7 @@ impl Write for GrowingFile {
     }
 }
 
-/// Prints the report. A closed pipe is an error and not a panic.
+/// Prints a report to the standard output. A closed pipe is an error and not a panic.
 pub fn print(report: &str) -> io::Result<()> {
     let mut out = io::stdout().lock();
     out.write_all(report.as_bytes())?;

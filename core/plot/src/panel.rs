@@ -22,7 +22,7 @@ pub struct Line {
 /// The scale of the vertical axis.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Vertical {
-    /// Equal distances.
+    /// A scale of equal distances.
     Linear,
     /// Powers of ten, with the highest of many points in a pixel: deviations pass through zero all the time.
     Logarithmic,
@@ -46,7 +46,7 @@ pub struct Panel<'a> {
 
 /// The name of the time axis.
 const SECONDS: &str = "time, s";
-/// From here on, s, hours are displayed, as seconds have five digits.
+/// The time, s, from which on an axis counts hours, as seconds have five digits.
 const HOURS_FROM: f64 = 1e4;
 
 /// The least deviation, below a double's rounding at one.

@@ -59,7 +59,7 @@ impl<'a, 'b> Sketch<'a, 'b> {
         Ok(())
     }
 
-    /// A dot.
+    /// Draws a dot at a point of space.
     pub fn dot(&self, point: &Vector3<f64>, colour: RGBColor) -> PlotResult {
         self.area.draw(&Circle::new(self.place(point), px(4), colour.filled()))?;
         Ok(())
@@ -73,7 +73,7 @@ impl<'a, 'b> Sketch<'a, 'b> {
         Ok(())
     }
 
-    /// A line with a head at its end.
+    /// Draws a line with an arrow's head at its end.
     pub fn arrow(&self, points: &[Vector3<f64>], colour: RGBColor, width: u32) -> PlotResult {
         self.line(points, colour, width)?;
         let places: Vec<_> = points.iter().map(|point| self.place(point)).collect();

@@ -27,7 +27,7 @@ pub(super) const GRID: RGBColor = RGBColor(226, 226, 226);
 
 /// A text style with letters of a size in pixels.
 pub(super) fn letters(size: u32, colour: RGBColor) -> TextStyle<'static> {
-    // The back end divides by this ratio.
+    // The drawing library divides font sizes by this ratio.
     let size = f64::from(px(size)) * 1.24;
     ("sans-serif", size).into_font().color(&colour)
 }

@@ -3,7 +3,7 @@
 //! `bits` prints the momentum of the compiled top (3.13) after a thousand steps; `steps` the seconds of a million steps of the
 //! declaration as text, a row each thousand; `members` those of 100,000 members with a hundred steps each.
 
-// The letters of the field.
+// Names of fields are the letters of the field of mechanics.
 #![allow(non_snake_case)]
 
 use std::time::Instant;
@@ -33,7 +33,7 @@ struct HeavyTop {
 
 type Error = Box<dyn std::error::Error>;
 
-/// As machine code, as in Python.
+/// The declaration read at run time and run by machine code, as in Python.
 fn as_text() -> Result<Late<SO3, Vector3<f64>, WithKinetic, Machine>, Error> {
     let late = Late::parse(
         "#[lagrangian(group = SO3, advected(w = up), l_d =
@@ -74,7 +74,7 @@ fn main() -> Result<(), Error> {
                 Ok((stepper, state))
             };
             let begun = Instant::now();
-            // What Python keeps of a member.
+            // The columns that the example in Python records of a member.
             let columns = (0..17).map(|column| format!("column_{column}")).collect::<Vec<_>>();
             let columns = columns.iter().map(String::as_str).collect::<Vec<_>>();
             let ensemble = Ensemble::one_by_one("tops", 100_000, 100, make).seed(7).keep_named(&columns, |run, row| {

@@ -18,15 +18,15 @@ use crate::scene::Backend;
 use crate::start::Start;
 use crate::table::Columns;
 
-/// From where to where, by what, within what.
+/// The task of a plan: start, goal, inputs, bounds and cost.
 #[derive(FromPyObject)]
 pub(crate) struct Task {
     step: f64,
     steps: usize,
     start: Start,
-    /// Any attitude where there is none.
+    /// The goal; the attitude is free if it is empty.
     goal: Start,
-    /// Any velocity.
+    /// Whether the velocity at the end is free.
     ends_anyhow: bool,
     /// The components of the velocity along which a force acts.
     axes: Vec<usize>,
@@ -37,15 +37,15 @@ pub(crate) struct Task {
     is_shortest: bool,
     tolerance: f64,
     most: usize,
-    /// Called with the number of iterations and the residual; `False` ends the search.
+    /// The function that is called with the number of iterations and the residual; `False` ends the search.
     progress: Option<Py<PyAny>>,
 }
 
-/// The plan, and what was raised in the middle of its search.
-type Found = (ControlPlan<Whole<Backend>>, Option<PyErr>);
+/// The plan, and the exception raised during its search.
+type PlanResult = (ControlPlan<Whole<Backend>>, Option<PyErr>);
 
 impl Task {
-    fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<Found, Failure> {
+    fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<PlanResult, Failure> {
         let stepper = Whole::<Backend>::of(Declaration::sum(terms)?, numbers, self.step, Method::default())?;
         let factors = &stepper.layout().factors;
         let at = |place: &Start| {

@@ -1,4 +1,4 @@
-//! Many motions of one scene, drawn at random, in files that survive a kill.
+//! Ensembles: many motions of one scene with random parameters and starts, in files from which a killed run resumes.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -15,14 +15,14 @@ use crate::run::steps_to;
 use crate::start::{Start, started};
 use crate::table::Columns;
 
-/// A number that is drawn, by the name of the parameter, of `velocity` or of `attitude`, and its distribution.
+/// A random number: the name of a parameter, `velocity` or `attitude`, its component, and its distribution.
 #[derive(Clone, FromPyObject)]
 pub(crate) struct Draw {
     of: String,
     place: usize,
-    /// The first numbers of the parameters that are drawn so, among those of all terms.
+    /// The first numbers of the parameters with this distribution, among the numbers of all terms.
     at: Vec<usize>,
-    /// `normal` with mean and deviation, `uniform` from the first to below the second.
+    /// The distribution: `normal` with mean and deviation, or `uniform` from the first number to below the second.
     kind: String,
     first: f64,
     second: f64,
@@ -31,7 +31,7 @@ pub(crate) struct Draw {
 pub(crate) type Draws = Vec<Draw>;
 
 impl Draw {
-    /// As the ensembles of files name it: `velocity.3`.
+    /// The random number of a component in a member, by a name of its own: `velocity.3`.
     fn number(&self, member: &Member<'_>) -> f64 {
         let name = format!("{}.{}", self.of, self.place + 1);
         match self.kind.as_str() {
@@ -41,10 +41,10 @@ impl Draw {
     }
 }
 
-/// How many members there are, and who makes which.
+/// The members of an ensemble and the share of this process.
 #[derive(FromPyObject)]
 pub(crate) struct Members {
-    /// By which one plan is told from another.
+    /// The name of the plan, which distinguishes it from others.
     name: String,
     members: u64,
     seed: u64,
@@ -54,20 +54,20 @@ pub(crate) struct Members {
     folder: std::path::PathBuf,
     threads: usize,
     share: (u64, u64),
-    /// Whether the attitude is drawn, each rotation as likely.
+    /// Whether the attitude is random, each rotation as likely.
     turns: bool,
-    /// Called with the number of chunks that are there and of all.
+    /// The function that is called with the number of finished chunks and of all.
     progress: Option<Py<PyAny>>,
 }
 
-/// What is there after a run.
+/// The results of a run: its report and the table of all members.
 pub(crate) struct Outcome {
     pub(crate) report: Report,
     pub(crate) table: Columns,
     pub(crate) failures: Vec<MemberFailure>,
 }
 
-/// Runs the members in threads of their own, while this one listens to Ctrl-C and tells of progress.
+/// Runs the members in other threads, while this one looks for Ctrl-C and reports progress.
 pub(crate) fn run_members(
     plan: Members,
     start: &Start,
@@ -116,7 +116,7 @@ pub(crate) fn run_members(
     let entries = factors.iter().map(|factor| factor.kind.columns()).sum();
     ensemble = ensemble.keep_named(&names, move |run, row| {
         let (stepper, state) = (run.stepper, run.state);
-        // A recorded row has the distance from the group besides.
+        // A recorded row also has the distance from the group, which members leave out.
         let (mut attitude, mut whole) = (vec![0.0; entries], vec![0.0; row.len()]);
         stepper.write(state, &(), &mut attitude, &mut whole);
         row[0] = stepper.time(state);
@@ -146,7 +146,7 @@ pub(crate) fn columns(factors: &[Factor]) -> Vec<Column> {
     columns
 }
 
-/// How often this thread looks for signals.
+/// Time between two looks for signals.
 const LOOK: Duration = Duration::from_millis(50);
 
 fn in_threads<M>(ensemble: &Ensemble<M>, store: &Store, plan: &Members) -> Result<Report, Failure>
@@ -188,7 +188,7 @@ where
     })
 }
 
-/// The rows of all chunks that are there, in the order of the members.
+/// The rows of all finished chunks, in the order of the members.
 fn collected<M: liestep::motion::Integrator>(
     ensemble: &Ensemble<M>,
     store: &Store,

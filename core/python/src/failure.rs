@@ -1,4 +1,4 @@
-//! What can go wrong, as one family of exceptions.
+//! Failures as one family of Python's exceptions.
 
 use std::fmt::Display;
 
@@ -6,16 +6,16 @@ use liestep_late::LateError;
 use liestep_scene::Mistake;
 use pyo3::prelude::*;
 
-/// Why something wasn't done, until there is an interpreter to tell it.
+/// The reason of a failure, before there is an interpreter to raise it in.
 #[derive(Debug)]
 pub(crate) enum Failure {
-    /// The class of the exception in `liestep.errors`, and what is wrong.
+    /// The class of the exception in `liestep.errors`, and its message.
     Of(&'static str, String),
     /// The mistakes of a text, each with its line and column.
     Text(Vec<(String, usize, usize)>),
     /// A mistake of a scene's file.
     File(Mistake),
-    /// What Python raised, as for Ctrl-C.
+    /// An exception raised by Python, as for Ctrl-C.
     Raised(PyErr),
 }
 

@@ -10,11 +10,11 @@ use crate::failure::Failure;
 use crate::run::Signals;
 use crate::table::{Columns, Table};
 
-/// A scene's file, read.
+/// A scene, read from a file.
 #[pyclass(frozen, module = "liestep._native")]
 pub(crate) struct File(Scene);
 
-/// Its run.
+/// A finished run of a file's scene.
 #[pyclass(frozen, module = "liestep._native")]
 pub(crate) struct FileRun {
     scene: Scene,
@@ -29,10 +29,10 @@ pub(crate) fn library(name: &str) -> Option<&'static str> {
     declaration(&name.replace('_', "-"))
 }
 
-/// Columns that listen to Ctrl-C.
-struct Listening<'a>(&'a mut Columns, &'a Signals);
+/// A sink that stops at Ctrl-C.
+struct InterruptibleColumns<'a>(&'a mut Columns, &'a Signals);
 
-impl Sink for Listening<'_> {
+impl Sink for InterruptibleColumns<'_> {
     fn begin(&mut self, columns: &[Column]) -> Result<(), SinkError> {
         self.0.begin(columns)
     }
@@ -49,7 +49,7 @@ impl Sink for Listening<'_> {
 
 #[pymethods]
 impl File {
-    /// Reads a file, or the text of one where it is given.
+    /// Reads a file, or takes its text if that is passed.
     #[new]
     #[pyo3(signature = (path, text = None))]
     #[allow(clippy::needless_pass_by_value)] // as Python gives it
@@ -58,7 +58,7 @@ impl File {
         Ok(Self(scene.map_err(Failure::from)?))
     }
 
-    /// The sum, and how it is stepped, in words.
+    /// A description of the terms and of the steps.
     #[getter]
     fn about(&self) -> String {
         match &self.0 {
@@ -79,7 +79,7 @@ impl File {
         let mut columns = Columns::new(0);
         let made = py.detach(|| {
             let signals = Signals::new();
-            let mut table = Listening(&mut columns, &signals);
+            let mut table = InterruptibleColumns(&mut columns, &signals);
             let made = match &self.0 {
                 Scene::Body(scene) => scene.run_with(&mut |_| (), Some(&mut table)),
                 Scene::System(system) => system.run_with(&mut |_| (), Some(&mut table)),
@@ -93,7 +93,7 @@ impl File {
 
 #[pymethods]
 impl FileRun {
-    /// Lines about its beginning and its end.
+    /// Lines about the start and the end of the run.
     #[getter]
     fn summary(&self) -> String {
         match &self.scene {
@@ -107,7 +107,7 @@ impl FileRun {
         self.run.steps()
     }
 
-    /// The events that happened: a name, a time, and whether the quantity rose.
+    /// The events that occurred: a name, a time, and whether the quantity rose.
     #[getter]
     fn events(&self) -> Vec<(String, f64, bool)> {
         let Scene::Body(scene) = &self.scene else { return Vec::new() };
@@ -126,7 +126,7 @@ impl FileRun {
         Ok(drawn.map_err(|error| Failure::Of("Error", error.to_string()))?)
     }
 
-    /// The page that plays it; none of several bodies.
+    /// The page that plays the run; none for several bodies.
     fn page(&self) -> Option<String> {
         match &self.scene {
             Scene::Body(scene) => Some(scene.page(&self.run)),

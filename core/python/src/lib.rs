@@ -26,22 +26,22 @@ use crate::control::Task;
 use crate::ensemble::{Draws, Members};
 use crate::failure::Failure;
 use crate::method::{Names, method};
-use crate::run::{Course, Recorded};
+use crate::run::{Course, RunRecord};
 use crate::start::Start;
 use crate::table::{Table, View};
 
-/// What a text declares.
+/// The declaration of a text.
 #[pyclass(frozen, module = "liestep._native")]
-struct Derived(&'static Declaration);
+struct Derivation(&'static Declaration);
 
 #[pymethods]
-impl Derived {
+impl Derivation {
     #[new]
     fn new(py: Python<'_>, text: &str) -> PyResult<Self> {
         Ok(Self(py.detach(|| Declaration::parse(text)).map_err(Failure::from)?))
     }
 
-    /// What was derived, as text.
+    /// The derived equations, as text.
     #[getter]
     fn derivation(&self) -> &'static str {
         &self.0.derivation
@@ -82,7 +82,7 @@ impl Derived {
 }
 
 /// A term, and all its numbers.
-type Term<'py> = (Bound<'py, Derived>, Vec<f64>);
+type Term<'py> = (Bound<'py, Derivation>, Vec<f64>);
 
 /// The declarations of terms, and the numbers of all.
 fn apart(terms: Vec<Term<'_>>) -> (Vec<&'static Declaration>, Vec<f64>) {
@@ -164,8 +164,8 @@ impl Scene {
     }
 }
 
-/// A run as Python sees it. What stopped it is raised there, with what was recorded.
-fn shown(py: Python<'_>, recorded: Recorded) -> PyResult<Bound<'_, PyDict>> {
+/// A run as Python's dictionary. What stopped it is raised there, with what was recorded.
+fn shown(py: Python<'_>, recorded: RunRecord) -> PyResult<Bound<'_, PyDict>> {
     let dictionary = PyDict::new(py);
     dictionary.set_item("table", Py::new(py, recorded.columns.into_table())?)?;
     let events = recorded.events.into_iter();
@@ -206,7 +206,7 @@ fn share(text: &str) -> PyResult<(u64, u64)> {
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::{Derived, Scene, Table, View, order, plan, schemes, share};
+    use super::{Derivation, Scene, Table, View, order, plan, schemes, share};
     #[pymodule_export]
     use crate::file::{File, FileRun, library};
     #[pymodule_export]

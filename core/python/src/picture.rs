@@ -1,4 +1,4 @@
-//! What a run looks like.
+//! Pictures of runs.
 
 use liestep_plot::{
     Area, BLUE, Colour, GREEN, Line, ORANGE, PURPLE, Panel, Path, PlotResult, Vertical, heading, px, render, sphere,
@@ -10,10 +10,10 @@ use pyo3::prelude::*;
 use crate::failure::Failure;
 use crate::table::Table;
 
-/// More points than a picture has room for.
+/// The most points of a line in a picture.
 const POINTS: usize = 4000;
 
-/// Every so many rows.
+/// The indices of every k-th row, so that there are no more than [`POINTS`].
 fn thinned(rows: usize) -> impl Iterator<Item = usize> {
     (0..rows).step_by(rows.div_ceil(POINTS).max(1))
 }
@@ -38,7 +38,7 @@ fn drawn(table: &Table, title: &str, subtitle: &str) -> PlotResult<String> {
     let rates = Panel::over_time("Velocity of the body", "", Vertical::Linear, lines);
     let energy = table.named("energy").ok_or("a run has an energy")?;
     let first = energy.first().copied().unwrap_or_default();
-    // A rounding is the least that there is: a zero would stretch the axis.
+    // A deviation is at least one rounding: a zero would stretch the logarithmic axis.
     let away = vec![line(&energy, BLUE, &|number| (number - first).abs().max(f64::EPSILON * first.abs()))];
     let energy = Panel::over_time("Energy: how far from its start", "", Vertical::Logarithmic, away);
     let panels = |area: &Area<'_>| {

@@ -1,4 +1,4 @@
-//! A run that is recorded into columns, with its events, and stopped where Python asks for it.
+//! A run that is recorded into columns, with its events, and stopped when Python requests it.
 
 use std::cell::{Cell, RefCell};
 use std::time::{Duration, Instant};
@@ -10,39 +10,39 @@ use pyo3::prelude::*;
 use crate::failure::Failure;
 use crate::table::Columns;
 
-/// What is looked for: that a quantity passes a value.
+/// An event: a quantity passes a value.
 #[derive(Clone, FromPyObject)]
 pub(crate) struct Watch {
     quantity: String,
     value: f64,
-    /// 1 where it rises, −1 where it falls, 0 where it does either.
+    /// The direction of the event: 1 where the quantity rises, −1 where it falls, 0 for both.
     direction: i8,
     stops: bool,
 }
 
-/// How long a run is and what is recorded of it.
+/// The length of a run, and what it records.
 #[derive(FromPyObject)]
 pub(crate) struct Course {
     pub(crate) until: f64,
-    /// In steps from row to row; zero where `times` are given.
+    /// Steps from row to row; zero if `times` are given.
     pub(crate) every: u64,
     pub(crate) times: Option<Vec<f64>>,
     pub(crate) events: Vec<Watch>,
 }
 
-/// What has become of a run.
-pub(crate) struct Recorded {
+/// The results of a run.
+pub(crate) struct RunRecord {
     pub(crate) columns: Columns,
-    /// One table for each event, with a row for each time it happened.
+    /// One table for each event, with a row for each occurrence.
     pub(crate) events: Vec<(Columns, Vec<bool>)>,
     pub(crate) steps: u64,
     pub(crate) iterations: u64,
     pub(crate) ending: Option<usize>,
-    /// Where it couldn't be made to its end; what was recorded up to then is there.
+    /// The failure that ended the run early; the rows up to then are in the table.
     pub(crate) failure: Option<Failure>,
 }
 
-/// Asks Python whether somebody has pressed Ctrl-C, at most some fifty times a second.
+/// A look for Ctrl-C in Python, at most some fifty times a second.
 pub(crate) struct Signals {
     asked: Cell<Instant>,
     raised: RefCell<Option<PyErr>>,
@@ -53,7 +53,7 @@ impl Signals {
         Self { asked: Cell::new(Instant::now()), raised: RefCell::new(None) }
     }
 
-    /// An error where the run is to stop.
+    /// The error of an interrupted run, if Python has a signal.
     pub(crate) fn look(&self) -> Result<(), &'static str> {
         if self.asked.get().elapsed() < Duration::from_millis(20) {
             return Ok(());
@@ -70,13 +70,13 @@ impl Signals {
     }
 }
 
-/// Looks at least this often, in steps.
+/// The most steps between two looks for signals.
 const LOOK: u64 = 4096;
 
-/// How far a time may be from a whole number of steps, as a share: as in a scene's file.
+/// Relative distance of a time from a whole number of steps up to which both are equal, as in a scene's file.
 const ROUNDING: f64 = 1e-9;
 
-/// How many steps there are to a time; where they have lengths of their own about how many.
+/// The number of steps up to a time, approximate if steps have different lengths.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked
 pub(crate) fn steps_to(time: f64, h: f64, are_equal: bool) -> Result<u64, Failure> {
     let steps = time / h;
@@ -96,13 +96,13 @@ pub(crate) fn steps_to(time: f64, h: f64, are_equal: bool) -> Result<u64, Failur
     Ok(if are_equal { whole } else { steps.ceil() } as u64)
 }
 
-/// Without the digits of roundings.
+/// The number without the rounding errors of its last digits.
 fn short(number: f64) -> f64 {
     format!("{number:.11e}").parse().unwrap_or(number)
 }
 
 /// Makes the steps, and rows of all columns that [`Recorder`] has.
-pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course) -> Result<Recorded, Failure> {
+pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course) -> Result<RunRecord, Failure> {
     let is_varied = stepper.length(&state).is_some();
     let steps = steps_to(course.until, stepper.step_size(), !is_varied)?.saturating_sub(state.steps());
     let rows = match &course.times {
@@ -133,7 +133,7 @@ pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course)
     let made = if is_varied { observed.until(course.until) } else { observed.steps(steps) };
     let end = Moment::of_step(stepper, &state);
     let (steps, time) = (end.steps(), end.time());
-    // The last state is a row, but where only some times are asked for.
+    // The last state is a row, too, unless only some times are requested.
     let is_a_row = last.get() >= time;
     let written = if course.every > 0 && !is_a_row { row(&end) } else { Ok(()) };
     let written = written.and_then(|()| recorder.into_inner().finish().map(|_| ()));
@@ -159,7 +159,7 @@ pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course)
         }
     }
     failure = failure.or_else(|| written.err().map(memory));
-    Ok(Recorded { columns, events: events.map_err(memory)?, steps, iterations, ending, failure })
+    Ok(RunRecord { columns, events: events.map_err(memory)?, steps, iterations, ending, failure })
 }
 
 impl Watch {
@@ -199,7 +199,7 @@ impl Watch {
             }
         };
         Ok(move |now: &Moment<'_, AnyStepper>| match what {
-            // By the cosine, which is smooth at the vertical.
+            // The tilt is compared by its cosine, which is smooth at the vertical.
             Quantity::Tilt => value.cos() - entry_of(now, 8),
             Quantity::Entry(place) => entry_of(now, place) - value,
             Quantity::Energy => now.energy() - value,
@@ -224,7 +224,7 @@ fn entry_of(motion: &AnyMotion, place: usize) -> f64 {
     motion.attitude().get(place).copied().unwrap_or(f64::NAN)
 }
 
-/// The name of each entry of an attitude in a table, empty for one that no table has.
+/// The name of each entry of an attitude in a table, empty for an entry that no table has.
 fn entries(factors: &[Factor]) -> impl Iterator<Item = String> {
     factors.iter().flat_map(|factor| {
         let (rows, mut names) = (factor.kind.rows(), factor.columns().into_iter().map(|(name, _)| name));

@@ -1,4 +1,4 @@
-//! A declaration with numbers as something that can be run, whatever its group and what it carries.
+//! A declaration with numbers as a scene to run, for any group and any advected parameters.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ use nalgebra::SVector;
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
 use crate::failure::Failure;
-use crate::run::{Course, Recorded, record};
+use crate::run::{Course, RunRecord, record};
 use crate::start::{Start, started};
 
 type V<const N: usize> = SVector<f64, N>;
@@ -22,7 +22,7 @@ type V<const N: usize> = SVector<f64, N>;
 type Four = (V<3>, V<3>, V<3>, V<3>);
 type WithEnergy = (Given<f64>, V<3>, V<3>, V<3>);
 
-/// Programs are machine code where the feature asks for it, and else interpreted: the bits are the same.
+/// The back end of programs: machine code if that feature is on, otherwise the interpreter, with the same bits.
 #[cfg(feature = "machine")]
 pub(crate) type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
@@ -31,9 +31,9 @@ pub(crate) type Backend = liestep_late::Interpreter;
 type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
 type Sum<G, W> = Late<G, W, WithKinetic>;
 
-/// A declaration whose group and advected parameters are types below, and numbers above.
+/// A declaration whose group and advected parameters are types inside, and numbers outside.
 pub(crate) trait Steps: Send + Sync {
-    /// The stepper of other numbers of the same declaration, by a method.
+    /// The stepper of the declaration with other numbers, by a method.
     fn stepper(&self, numbers: &[f64], method: (Method, f64)) -> Result<AnyStepper, Failure>;
 
     /// The stepper by the method and the step that are the cheapest for an accuracy.
@@ -95,7 +95,7 @@ impl Scene {
     }
 
     /// The run by a method and a step.
-    pub(crate) fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<Recorded, Failure> {
+    pub(crate) fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<RunRecord, Failure> {
         let stepper = self.stepper(method)?;
         record(&stepper, started(&stepper, start)?, course)
     }
@@ -106,7 +106,7 @@ impl Scene {
         tolerance: f64,
         start: &Start,
         course: &Course,
-    ) -> Result<(Recorded, Choice), Failure> {
+    ) -> Result<(RunRecord, Choice), Failure> {
         let accuracy = Accuracy { tolerance, horizon: course.until };
         let (stepper, choice) = self.steps.accurate(&self.numbers, accuracy, start)?;
         Ok((record(&stepper, started(&stepper, start)?, course)?, choice))
@@ -138,7 +138,7 @@ impl Scene {
     }
 }
 
-/// A declaration on any group, whose step is data: its first stepper has the code that all share.
+/// A declaration on any group, whose step is data: its first stepper has the code that all others share.
 struct Data(&'static Declaration);
 
 impl Data {
@@ -211,7 +211,7 @@ pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<S
             }
         )+)+};
     }
-    // More vectors than the types carry are made of the directions of space.
+    // A sum with more vectors than the types have advects the directions of space instead.
     for in_frames in [false, true] {
         let sum = if in_frames && sum.energy.is_none() { Declaration::sum_in_frames(terms)? } else { sum };
         first_that_fits! {

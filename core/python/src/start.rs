@@ -6,7 +6,8 @@ use pyo3::prelude::*;
 
 use crate::failure::Failure;
 
-/// How a motion starts: the attitude as a quaternion, as the entries of a matrix row by row, or none at all; and a velocity.
+/// The start of a motion: the attitude as a quaternion, as the entries of a matrix row by row, or the identity if it is
+/// empty; and a velocity.
 #[derive(Clone, FromPyObject)]
 pub(crate) struct Start {
     pub(crate) attitude: Vec<f64>,
@@ -50,7 +51,7 @@ impl Start {
             if !matches!(factors, [Factor { kind: FactorKind::Rotation, .. }]) {
                 return wrong("a quaternion is an attitude on SO3: give a matrix here".to_owned());
             }
-            // Row by row, unlike nalgebra's own order.
+            // Entries are row by row, unlike nalgebra's own order.
             return Ok(unit.to_rotation_matrix().into_inner().transpose().as_slice().to_vec());
         }
         let entries: usize = factors.iter().map(|factor| factor.kind.rows() * factor.kind.rows()).sum();

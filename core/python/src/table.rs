@@ -14,22 +14,22 @@ use pyo3::types::{PyCapsule, PyDict, PyTuple, PyType};
 
 use crate::failure::Failure;
 
-/// A table that is being filled, column by column in one block of memory: each column has room for all rows.
+/// A table under construction, column by column in one block of memory: each column has room for all rows.
 pub(crate) struct Columns {
     columns: Vec<Column>,
     numbers: Vec<f64>,
-    /// The rows that there are, and those that there is room for.
+    /// The number of rows, and the most that fit.
     rows: usize,
     room: usize,
 }
 
 impl Columns {
-    /// With room for these rows, if there is that much memory.
+    /// An empty table with room for these rows, if there is that much memory.
     pub(crate) const fn new(room: usize) -> Self {
         Self { columns: Vec::new(), numbers: Vec::new(), rows: 0, room }
     }
 
-    /// Of columns that are there already, all of one length.
+    /// A table of finished columns, all of one length.
     pub(crate) fn of(columns: Vec<(Column, Vec<f64>)>) -> Self {
         let rows = columns.first().map_or(0, |(_, numbers)| numbers.len());
         let (columns, numbers): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
@@ -53,7 +53,7 @@ impl Columns {
     }
 }
 
-/// Zeros, which the system makes when they are written to; or an error, where there is no such memory.
+/// A block of zeros, which the system allocates when they are written to; or an error, if there is no such memory.
 fn block(columns: usize, room: usize) -> Result<Vec<f64>, SinkError> {
     let numbers = columns.checked_mul(room).filter(|numbers| *numbers < (1 << 44));
     let message =
@@ -122,13 +122,13 @@ impl Table {
 }
 
 /// A column as it is pickled: its name, its unit and its numbers.
-type Pickled = (String, String, Vec<f64>);
+type ColumnData = (String, String, Vec<f64>);
 
 #[pymethods]
 impl Table {
     /// A table of columns of one length.
     #[new]
-    fn new(columns: Vec<Pickled>) -> PyResult<Self> {
+    fn new(columns: Vec<ColumnData>) -> PyResult<Self> {
         let length = columns.first().map_or(0, |(.., numbers)| numbers.len());
         if columns.iter().any(|(.., numbers)| numbers.len() != length) {
             return Err(Failure::Of("ColumnError", "the columns of a table are of one length".to_owned()).into());
@@ -137,7 +137,7 @@ impl Table {
         Ok(Columns::of(columns.into_iter().map(of).collect()).into_table())
     }
 
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (Vec<Pickled>,)) {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (Vec<ColumnData>,)) {
         let table = slf.get();
         let columns = table.columns.iter().enumerate();
         let of = |(place, column): (usize, &Column)| {
@@ -156,7 +156,7 @@ impl Table {
         self.rows
     }
 
-    /// What `NumPy` makes an array of, which looks at these columns: one of them, or several side by side.
+    /// The columns that `NumPy` makes an array of without a copy: one of them, or several side by side.
     fn view(slf: &Bound<'_, Self>, first: usize, count: Option<usize>) -> PyResult<View> {
         let own = slf.get();
         if first.checked_add(count.unwrap_or(1)).is_none_or(|end| end > own.columns.len()) {
@@ -172,7 +172,7 @@ impl Table {
         py: Python<'py>,
         requested_schema: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyCapsule>> {
-        // Doubles are all that there is.
+        // The request is ignored, as all columns are doubles.
         drop(requested_schema);
         let batch = self.batch().map_err(|error| PyMemoryError::new_err(error.to_string()))?;
         let schema = batch.schema();

@@ -63,7 +63,7 @@ pub enum RefinementError {
     /// All runs ended far from the reference: all errors are 0.5 and more.
     #[error("no run ends near the reference, the least error is {least:.1e}; make more steps")]
     OtherMotion {
-        /// The least error.
+        /// The least error among the runs.
         least: f64,
     },
     /// An end, or the reference, isn't finite.
@@ -75,7 +75,7 @@ pub enum RefinementError {
 }
 
 /// A run that is ready to start.
-pub(crate) struct Ready<I: Integrator> {
+pub(crate) struct PreparedRun<I: Integrator> {
     time: f64,
     step: f64,
     steps: u64,
@@ -87,7 +87,7 @@ impl<
     G: LieGroup<Scalar = f64>,
     A: Advected<G>,
     I: Integrator<Scalar = f64, Motion = Motion<G, A>, Velocity = G::Vector>,
-> Ready<I>
+> PreparedRun<I>
 {
     /// A run of this number of equal steps up to a time.
     #[allow(clippy::cast_precision_loss)] // no run has 2⁵³ steps
@@ -158,7 +158,7 @@ pub(crate) fn plan<
     }
     let exact = match (reference, most) {
         (Reference::End(end), _) => end,
-        (Reference::Finest, most) => Ready::new(family, time, most.unwrap_or(0))?.run()?.0,
+        (Reference::Finest, most) => PreparedRun::new(family, time, most.unwrap_or(0))?.run()?.0,
     };
     Ok((counts, exact))
 }
@@ -188,7 +188,7 @@ pub fn convergence<
 ) -> Result<Refinement, RefinementError> {
     let (counts, exact) = plan(&mut family, time, counts, reference)?;
     let row = |steps| {
-        let ready = Ready::new(&mut family, time, steps)?;
+        let ready = PreparedRun::new(&mut family, time, steps)?;
         ready.measurement(ready.run()?, &exact)
     };
     counts.into_iter().map(row).collect()

@@ -7,7 +7,7 @@ use liestep::accuracy::End;
 use liestep::groups::{Advected, LieGroup};
 use liestep::motion::{Integrator, Motion};
 
-use crate::runs::{Ready, Reference, RefinementError, plan};
+use crate::runs::{PreparedRun, Reference, RefinementError, plan};
 use crate::table::{Measurement, Refinement};
 
 /// The effort of a measurement.
@@ -232,7 +232,7 @@ fn measured<
     exact: &End<G>,
     effort: Effort,
 ) -> Result<(Measurement, f64), RefinementError> {
-    let ready = Ready::new(family, time, steps)?;
+    let ready = PreparedRun::new(family, time, steps)?;
     let (ended, seconds) = effort.time(|| ready.run())?;
     let row = ready.measurement(ended, exact)?;
     Ok((Measurement { seconds: Some(seconds), ..row }, seconds))

@@ -19,7 +19,7 @@ pub struct Offer {
     pub step: f64,
     /// The arithmetic of the run, relative to that of the chosen method.
     pub cost: f64,
-    /// Whether its trials ended early, as it could only be more expensive.
+    /// Whether the method's trials ended early, as the method could only be more expensive.
     pub is_bound: bool,
 }
 

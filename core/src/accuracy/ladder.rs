@@ -15,7 +15,7 @@ pub(super) const LARGEST_ERROR: f64 = 0.05;
 /// Excess of the power of an error's fall over the order, at most. It occurs if the potential is small.
 const BEYOND_THE_ORDER: f64 = 4.0;
 
-/// The cost of a method that doesn't know its own.
+/// The assumed cost of a method that doesn't state one.
 pub(super) const UNKNOWN: Cost = Cost { step: 1e3, iteration: 0.0, fewest: 0, once: 0.0 };
 
 /// A run to the horizon with `steps` steps.
@@ -26,7 +26,7 @@ pub(super) struct Run {
     a_step: f64,
     /// Operations of the run.
     pub(super) cost: f64,
-    /// The end, or none if the step is invalid, or one had no solution.
+    /// The state at the end of the run, or none if the step is invalid, or one had no solution.
     pub(super) end: Option<Rc<EndNumbers>>,
 }
 
@@ -197,7 +197,7 @@ impl<'a> Ladder<'a> {
         let last = points.last()?;
         let order = Self::shown(&points, self.order()).unwrap_or(unseen);
         let ratio = (last.steps / finest.steps).powf(order);
-        // The measured difference is that of two errors.
+        // The measured difference is that of the errors of two runs.
         Some((last.error * ratio / (1.0 - ratio), order))
     }
 

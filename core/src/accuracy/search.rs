@@ -45,7 +45,7 @@ struct Best {
 
 /// Reasons against methods that don't reach the tolerance.
 #[derive(Default)]
-struct Refused {
+struct Refusals {
     /// Steps of the first method with too many, whether they are a lower bound, and its name.
     many: Option<(f64, bool, String)>,
     /// The least tolerance that rounding permits.
@@ -70,7 +70,7 @@ struct Search<'a> {
     accuracy: Accuracy,
     start: Start,
     trials: Trials,
-    refused: Refused,
+    refused: Refusals,
 }
 
 /// The cheapest method for an accuracy, by operations.
@@ -88,7 +88,7 @@ pub(super) fn search(methods: &[Candidate], accuracy: Accuracy, start: &Start) -
         accuracy,
         start: start.clone(),
         trials: Trials::default(),
-        refused: Refused::default(),
+        refused: Refusals::default(),
     };
     search.found().ok_or_else(|| search.refusal())
 }
@@ -326,13 +326,13 @@ impl<'a> Search<'a> {
 
     /// The error of a failed search. Long steps may fail in any way, so that their failure comes last.
     fn refusal(&mut self) -> AccuracyError {
-        let Refused { many, floor, failure, .. } = core::mem::take(&mut self.refused);
+        let Refusals { many, floor, failure, .. } = core::mem::take(&mut self.refused);
         let (trials, tolerance) = (self.trials, self.accuracy.tolerance);
         match (floor, failure, many) {
             (Some(floor), ..) => AccuracyError::Unreachable { tolerance, floor, trials },
             (_, Some(failure @ AccuracyError::Setup(_)), _) | (_, Some(failure), None) => failure,
             (.., Some((steps, is_bound, method))) => AccuracyError::TooManySteps { steps, is_bound, method, trials },
-            // Without any method.
+            // No method was tried.
             (..) => AccuracyError::TooManySteps { steps: 0.0, is_bound: true, method: String::new(), trials },
         }
     }
@@ -345,8 +345,8 @@ impl Survey<'_> {
         Some(self.ladders[index].of_run((SHORTER * steps, a_step)))
     }
 
-    /// Lower bounds of the same for a method without a small enough error here; with one step, if that is too long for
-    /// this part.
+    /// Lower bounds of the steps and operations expected of a method without a small enough error here; with one step,
+    /// if that is too long for this part.
     fn bound(&self, index: usize, error: f64) -> (f64, f64) {
         let ladder = &self.ladders[index];
         ladder.of_run((SHORTER * ladder.bound(error).0, ladder.least(1.0) - ladder.least(0.0)))

@@ -73,7 +73,7 @@ impl<G: LieGroup> Back<'_, G> {
 }
 
 /// Data of a run besides the changes by its steps.
-struct Given<'i, S: Effect> {
+struct RunData<'i, S: Effect> {
     steps: u64,
     /// The inputs of the steps; empty if no step has one.
     inputs: &'i [InputOf<S>],
@@ -86,7 +86,7 @@ struct Given<'i, S: Effect> {
     ends: usize,
 }
 
-impl<S: Effect> Given<'_, S> {
+impl<S: Effect> RunData<'_, S> {
     fn input(&self, n: u64) -> &InputOf<S> {
         usize::try_from(n).ok().and_then(|n| self.inputs.get(n)).unwrap_or(&Input::Free)
     }
@@ -97,7 +97,7 @@ struct Record<'a, 'i, S: SecondDerivatives, P: Linearisable<S>> {
     linearised: &'a Linearisation<'a, S, P>,
     state: &'a mut StateOf<S, P>,
     steps: Range<u64>,
-    given: &'a mut Given<'i, S>,
+    given: &'a mut RunData<'i, S>,
     events: &'a RefCell<Vec<ChangeOf<S>>>,
 }
 
@@ -132,7 +132,7 @@ struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
     linearised: &'a Linearisation<'a, S, P>,
     steps: Range<u64>,
     events: &'a [ChangeOf<S>],
-    given: &'a Given<'a, S>,
+    given: &'a RunData<'a, S>,
     /// The derivatives by the inputs, from the last to the first.
     by_inputs: &'a mut Vec<InputOf<S>>,
     back: &'a mut Back<'b, Group<S>>,
@@ -147,7 +147,7 @@ where
 {
     type Output = Result<(), StepError>;
 
-    /// AVX has three-operand instructions; nothing here acts on four numbers at a time.
+    /// AVX is used for its instructions with three operands; no computation acts on four numbers at a time.
     const VECTORS: Vectors = Vectors::Four;
     const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
@@ -280,7 +280,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
         mut cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
         let ends = if inputs.is_empty() { self.stepper.plan.ends() } else { 0 };
-        let mut given = Given { steps, inputs, motions: Vec::new(), before_end: None, ends };
+        let mut given = RunData { steps, inputs, motions: Vec::new(), before_end: None, ends };
         let mut by_inputs = Vec::with_capacity(inputs.len());
         let length = match tape {
             Tape::All => steps,

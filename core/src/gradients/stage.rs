@@ -30,7 +30,7 @@ pub struct Stage<'a, E: Effect> {
 /// The share of a force gradient in a kick: of the push `f` of the potential `−½ τ·J⁻¹τ`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ForceGradient<'a, T, C, M> {
-    /// The share, s³.
+    /// The share of the force gradient, s³.
     pub(crate) share: T,
     /// The constants for which [`Effect::kick_before`] returns the torque `τ`.
     pub(crate) torque: &'a C,
@@ -340,7 +340,7 @@ pub(super) type WayBack<'a, G> = (&'a mut Cotangent<<G as LieGroup>::Vector>, &'
 /// A pass over the stages of a step, by the derivatives of the library's own plans.
 #[doc(hidden)]
 pub trait Pass<G: LieGroup> {
-    /// Whether it needs derivatives by parameters; those of an exact flow may otherwise be left out.
+    /// Whether the pass needs derivatives by parameters; those of an exact flow may otherwise be left out.
     fn asks_for_parameters(&self) -> bool;
 
     /// The gradients of a reverse pass: by the state after the stage, to be replaced by that before it, and by the

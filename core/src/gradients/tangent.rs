@@ -28,7 +28,7 @@ pub struct Tangent<G: LieGroup, A> {
     /// The derivatives of a stage by the parameters, by their numbers; followed by those by the step's prescribed
     /// values.
     shares: Vec<(G::Vector, G::Vector)>,
-    /// How many of the shares belong to values.
+    /// Number of the shares that belong to prescribed values.
     values: usize,
     /// Whether the step has prescribed values, so that advected parameters have no share.
     pub(super) is_given_values: bool,

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 /// A factor of a group: the kind of its elements, and the names of its components.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Factor {
-    /// The kind of its elements.
+    /// The kind of the factor's elements.
     pub kind: FactorKind,
     /// The names of algebra elements' and covectors' components, with the units of a velocity and of a momentum, such as
     /// `x`, `rad/s` and `kg m²/s`; an unknown unit is empty. In a product a name ends with the place of the factor, `x_1`.

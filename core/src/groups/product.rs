@@ -35,7 +35,7 @@ pub trait Factor<const K: usize>: LieGroup {
 }
 
 /// The components of two groups, one after the other.
-type Joined<A, B, T> = <A as Join<T, B>>::Joined;
+type JointOf<A, B, T> = <A as Join<T, B>>::Joined;
 
 /// The factors of a product, whose names end with their places.
 fn at_places<const N: usize>(factors: [Vec<layout::Factor>; N]) -> Vec<layout::Factor> {
@@ -270,7 +270,7 @@ macro_rules! product {
 
 product! {
     A 0 a, B 1 b;
-    T: Joined<A::Vector, B::Vector, T> where [A::Vector: Join<T, B::Vector>];
+    T: JointOf<A::Vector, B::Vector, T> where [A::Vector: Join<T, B::Vector>];
     join a.join(&b);
     split joined { A::Vector::split(joined) };
     squares <A::Vector as Join<T, B::Vector>>::join_squares(&a, &b);
@@ -280,19 +280,19 @@ product! {
 
 product! {
     A 0 a, B 1 b, C 2 c;
-    T: Joined<Joined<A::Vector, B::Vector, T>, C::Vector, T> where [
+    T: JointOf<JointOf<A::Vector, B::Vector, T>, C::Vector, T> where [
         A::Vector: Join<T, B::Vector>,
-        Joined<A::Vector, B::Vector, T>: Join<T, C::Vector>,
+        JointOf<A::Vector, B::Vector, T>: Join<T, C::Vector>,
     ];
     join a.join(&b).join(&c);
     split joined {
-        let (others, c) = Joined::<A::Vector, B::Vector, T>::split(joined);
+        let (others, c) = JointOf::<A::Vector, B::Vector, T>::split(joined);
         let (a, b) = A::Vector::split(&others);
         (a, b, c)
     };
     squares {
         let others = <A::Vector as Join<T, B::Vector>>::join_squares(&a, &b);
-        <Joined<A::Vector, B::Vector, T> as Join<T, C::Vector>>::join_squares(&others, &c)
+        <JointOf<A::Vector, B::Vector, T> as Join<T, C::Vector>>::join_squares(&others, &c)
     };
     dimension A::DIMENSION + B::DIMENSION + C::DIMENSION;
     factors A::FACTORS.then(A::DIMENSION, B::FACTORS.then(B::DIMENSION, C::FACTORS));
@@ -300,22 +300,22 @@ product! {
 
 product! {
     A 0 a, B 1 b, C 2 c, D 3 d;
-    T: Joined<Joined<Joined<A::Vector, B::Vector, T>, C::Vector, T>, D::Vector, T> where [
+    T: JointOf<JointOf<JointOf<A::Vector, B::Vector, T>, C::Vector, T>, D::Vector, T> where [
         A::Vector: Join<T, B::Vector>,
-        Joined<A::Vector, B::Vector, T>: Join<T, C::Vector>,
-        Joined<Joined<A::Vector, B::Vector, T>, C::Vector, T>: Join<T, D::Vector>,
+        JointOf<A::Vector, B::Vector, T>: Join<T, C::Vector>,
+        JointOf<JointOf<A::Vector, B::Vector, T>, C::Vector, T>: Join<T, D::Vector>,
     ];
     join a.join(&b).join(&c).join(&d);
     split joined {
-        let (three, d) = Joined::<Joined<A::Vector, B::Vector, T>, C::Vector, T>::split(joined);
-        let (two, c) = Joined::<A::Vector, B::Vector, T>::split(&three);
+        let (three, d) = JointOf::<JointOf<A::Vector, B::Vector, T>, C::Vector, T>::split(joined);
+        let (two, c) = JointOf::<A::Vector, B::Vector, T>::split(&three);
         let (a, b) = A::Vector::split(&two);
         (a, b, c, d)
     };
     squares {
         let two = <A::Vector as Join<T, B::Vector>>::join_squares(&a, &b);
-        let three = <Joined<A::Vector, B::Vector, T> as Join<T, C::Vector>>::join_squares(&two, &c);
-        <Joined<Joined<A::Vector, B::Vector, T>, C::Vector, T> as Join<T, D::Vector>>::join_squares(&three, &d)
+        let three = <JointOf<A::Vector, B::Vector, T> as Join<T, C::Vector>>::join_squares(&two, &c);
+        <JointOf<JointOf<A::Vector, B::Vector, T>, C::Vector, T> as Join<T, D::Vector>>::join_squares(&three, &d)
     };
     dimension A::DIMENSION + B::DIMENSION + C::DIMENSION + D::DIMENSION;
     factors A::FACTORS.then(A::DIMENSION, B::FACTORS.then(B::DIMENSION, C::FACTORS.then(C::DIMENSION, D::FACTORS)));

@@ -130,7 +130,7 @@ impl<T: RealField + Copy> SO3<T> {
     /// identity, too, as with [`exp`](Self::exp).
     #[must_use]
     pub fn log(&self) -> Vector3<T> {
-        // The formula that is smooth at the identity has all its digits below 90°; near 180° it has none.
+        // The logarithm that is smooth at the identity has all its digits below 90°; near 180° it has none.
         if self.0.trace() > T::one() { rotation_log(self.0) } else { self.to_quaternion().scaled_axis() }
     }
 }

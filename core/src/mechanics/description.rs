@@ -2,9 +2,9 @@
 
 /// The visitor of a scene's description, for [`Effect::describe`](crate::mechanics::Effect::describe).
 pub trait SceneVisitor<T> {
-    /// The beginning of a term with this [`DERIVATION`](crate::mechanics::Effect::DERIVATION).
+    /// The beginning of a term, by the text of its [`DERIVATION`](crate::mechanics::Effect::DERIVATION).
     fn term(&mut self, derivation: &'static str);
 
-    /// A scalar of a field of the latest term.
+    /// A scalar of a field, which belongs to the term begun last.
     fn parameter(&mut self, field: &'static str, value: T);
 }

@@ -121,7 +121,7 @@ fn check_finite<T: RealField + Copy>(what: &'static str, vector: &Vector3<T>) ->
     if vector.iter().all(|&entry| is_finite(entry)) { Ok(()) } else { Err(SetupError::NonFinite { what }) }
 }
 
-/// The vector normalised, if its length is one up to printing.
+/// The vector normalised, if its length is one to the digits of a printed number.
 fn unit<T: RealField + Copy + Real>(what: &'static str, vector: &Vector3<T>) -> Result<Vector3<T>, SetupError> {
     check_finite(what, vector)?;
     let length = vector.norm();
@@ -189,7 +189,7 @@ mod tests {
             assert!(attitude.defect() < 1e-15 * 8.0 && r.determinant() > 0.0);
             assert!((r * axis - direction).amax() < 1e-15 && (r * velocity - omega).amax() < 1e-15 * 8.0);
             assert!(velocity.dot(&axis).abs() < 1e-16 * 8.0);
-            // The axis of the shortest turn is perpendicular to both.
+            // The axis of the shortest turn is perpendicular to both directions.
             assert!((r.trace() - 1.0 - 2.0 * axis.dot(&direction)).abs() < 1e-15 * 8.0);
         }
         let (attitude, _) = rod.pointing(&axis, &axis, &Vector3::zeros()).unwrap();

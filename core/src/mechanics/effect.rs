@@ -157,7 +157,7 @@ impl<E: Effect + ?Sized> Limit<E> {
     message = "`{Self}` isn't an effect, so it can't be in a scene",
     label = "not an effect",
     note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums",
-    note = "a continuous Lagrangian `l = …` is one with `discretise = …`, which makes its steps",
+    note = "a continuous Lagrangian `l = …` is one with `discretise = trapezoid(Cayley)` or another, which makes its steps",
     note = "joints are added to a system of bodies: `liestep::methods::Multibody`"
 )]
 #[hot]
@@ -210,8 +210,8 @@ pub trait Effect: Term {
         Self::DERIVATION.to_owned()
     }
 
-    /// [`INERTIA_IS_CONSTANT`](Self::INERTIA_IS_CONSTANT) of a value: the type of an effect that is declared at run
-    /// time doesn't determine it.
+    /// Whether the inertia of this value is constant, as by [`INERTIA_IS_CONSTANT`](Self::INERTIA_IS_CONSTANT): the
+    /// type of an effect that is declared at run time doesn't determine it.
     #[must_use]
     fn has_constant_inertia(&self) -> bool {
         Self::INERTIA_IS_CONSTANT
@@ -229,13 +229,13 @@ pub trait Effect: Term {
         Self::DENOMINATORS
     }
 
-    /// [`PARTS`](Self::PARTS) of a value, which may lack parts that its type has.
+    /// The parts of a value, some of the [`PARTS`](Self::PARTS) of its type.
     #[must_use]
     fn parts(_: &Self::Constants) -> Parts {
         Self::PARTS
     }
 
-    /// [`APART`](Self::APART) of a value, which may have more blocks than its type.
+    /// The independent blocks of a value, which may be more than the [`APART`](Self::APART) of its type.
     #[must_use]
     fn apart(_: &Self::Constants) -> Blocks {
         Self::APART

@@ -45,7 +45,7 @@ pub enum InertiaError {
         "the inertia is not diagonal: an entry off the diagonal is {largest:e}; take `NonstandardInertia`, or the principal axes as the body's"
     )]
     NotDiagonal {
-        /// The largest of these entries, kg m².
+        /// The largest of the entries off the diagonal, kg m².
         largest: f64,
     },
     /// `J_d` has a negative eigenvalue, so the principal moments violate the triangle inequality.
@@ -288,7 +288,7 @@ fn symmetric_part<T: RealField + Copy>(matrix: &Matrix3<T>) -> Matrix3<T> {
     (matrix + matrix.transpose()) * real::<T>(0.5)
 }
 
-/// The symmetrised `J_d`, if it is that of a body.
+/// Checks that a nonstandard inertia `J_d` is that of a rigid body, and symmetrises it.
 fn check<T: RealField + Copy>(nonstandard: &Matrix3<T>) -> Result<Matrix3<T>, InertiaError> {
     if !nonstandard.iter().all(|&entry| crate::numbers::is_finite(entry)) {
         return Err(InertiaError::NotFinite);

@@ -32,8 +32,8 @@ pub trait DiscreteLagrangian: Effect {
     /// hold if vectors were declared as points. In an implementation by hand it is the author's claim.
     const SELF_ADJOINT: bool;
 
-    /// [`SELF_ADJOINT`](Self::SELF_ADJOINT) of a value: the type of a Lagrangian declared at run time doesn't determine
-    /// it.
+    /// Whether this value is self-adjoint, as by [`SELF_ADJOINT`](Self::SELF_ADJOINT): the type of a Lagrangian
+    /// declared at run time doesn't determine it.
     fn is_self_adjoint(&self) -> bool {
         Self::SELF_ADJOINT
     }

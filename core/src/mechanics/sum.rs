@@ -53,7 +53,7 @@ impl<A, B> Sum<A, B> {
     }
 }
 
-/// The group `G` itself: what the effects `A` and `B` have to share to add. It is there for its message.
+/// The group `G` itself: `A` and `B` can be added if they have the same one. A sum requires it for the message below.
 #[diagnostic::on_unimplemented(
     message = "`{B}` can't be added to `{A}`: the one moves on `{Self}`, the other on `{G}`",
     label = "effects of different groups, or of different scalars",
@@ -96,7 +96,7 @@ where
     }
 }
 
-/// Methods that add what the terms have, each with its own advected parameters.
+/// Methods that add the values of both terms, each at its own advected parameters.
 macro_rules! added {
     ($(fn $name:ident($at:ident: $type:ty, w $(, $h:ident: $scalar:ty)?) -> $result:ty;)+) => {$(
         fn $name(&self, $at: $type, w: &Self::Advected $(, $h: $scalar)?) -> $result {
@@ -106,7 +106,7 @@ macro_rules! added {
 }
 pub(super) use added;
 
-/// What both terms have added, or the only one there is.
+/// A part of a sum: the sum of the parts of both terms, or the part of the one term that has it.
 macro_rules! of_those_with {
     ($part:ident: $both:expr, $first:expr, $second:expr $(,)?) => {
         match (A::PARTS.$part, B::PARTS.$part) {
@@ -164,7 +164,7 @@ where
                                       Jacobians and energies, each added; see DERIVATION of either\n";
 
     fn derivation(&self) -> String {
-        // A blank line between terms; those of an inner sum have theirs.
+        // A blank line between the derivations of two terms; an inner sum has its own.
         format!("{}\n{}", self.first.derivation(), self.second.derivation())
     }
 

@@ -37,7 +37,7 @@ where
 )]
 #[doc(hidden)]
 pub trait OneVector {
-    /// The scalar of its components.
+    /// The scalar of the vector's components.
     type Scalar: Real;
 
     /// The vector in the body frame.

@@ -127,7 +127,7 @@ pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, Setup
 pub(crate) fn check_inertia<G: LieGroup>(inertia: &SquareOf<G>) -> Result<(), SetupError> {
     let (unit, determinant) = G::Vector::solve(inertia, &G::Vector::zero());
     let (pivot, component) = G::Vector::least_pivot(inertia);
-    // A smaller absolute value may be the rounding error of zero.
+    // A pivot of smaller absolute value may be the rounding error of zero.
     if pivot.simd_lt(real::<G::Scalar>(-1e6) * <G::Scalar as SimdRealField>::simd_default_epsilon()).any() {
         return Err(SetupError::NegativeKinetic { pivot: reported(pivot), body: body_of::<G>(component) });
     }

@@ -12,10 +12,10 @@ use crate::numbers::{Kernel, Vectors, dispatch};
 use nalgebra::Vector3;
 
 type Top = Sum<PrincipalBody, Gravity>;
-type Running<P> = State<SO3, ((), Vector3<f64>), <P as Plan<Top>>::Kept>;
+type TopState<P> = State<SO3, ((), Vector3<f64>), <P as Plan<Top>>::Kept>;
 
 /// A step compiled for vector registers of `WIDE` doubles.
-struct Step<'a, P: Plan<Top>, const WIDE: usize>(&'a Stepper<Top, P>, &'a mut Running<P>);
+struct Step<'a, P: Plan<Top>, const WIDE: usize>(&'a Stepper<Top, P>, &'a mut TopState<P>);
 
 impl<P: Plan<Top>, const WIDE: usize> Kernel for Step<'_, P, WIDE> {
     type Output = StepReport;
@@ -33,7 +33,7 @@ impl<P: Plan<Top>, const WIDE: usize> Kernel for Step<'_, P, WIDE> {
 }
 
 fn assert_same_digits<P: Plan<Top>>(stepper: &Stepper<Top, P>) {
-    let start = || -> Running<P> { stepper.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap() };
+    let start = || -> TopState<P> { stepper.start(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).unwrap() };
     let [mut two, mut four, mut eight, mut chosen] = [start(), start(), start(), start()];
     for step in 0..1000 {
         let here = dispatch(Step::<P, 2>(stepper, &mut two));

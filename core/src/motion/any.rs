@@ -45,7 +45,7 @@ pub struct AnyStepper {
 }
 
 impl AnyStepper {
-    /// A stepper of this propagator.
+    /// A stepper around this propagator.
     pub fn new(propagator: impl Propagator + 'static) -> Self {
         let layout = Rc::new(propagator.layout().clone());
         Self { propagator: Rc::new(propagator), layout }

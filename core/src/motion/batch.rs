@@ -174,7 +174,7 @@ impl<W, M: Batchable<W>> Batch<W, M> {
         for (lane, stepper, state) in others {
             assert!(self.set(*lane, stepper, state), "what lanes share doesn't depend on where a body is");
         }
-        // The first body was splatted into all lanes, its own included.
+        // The first body was repeated in all lanes, its own included.
     }
 
     /// The states in all lanes; the lane of a body that has stopped contains another's.

@@ -80,7 +80,7 @@ impl<G: LieGroup<Scalar = f64>, A: Advected<G>> GroupStepper<G, A> {
         self.any.start_at(attitude.into(), velocity).map(typed)
     }
 
-    /// The numbers of a motion, with a memory of zeros.
+    /// The state of a motion as numbers, with a method's memory of zeros.
     fn numbers(&self, motion: &Motion<G, A>) -> AnyMotion {
         let mut numbers = vec![0.0; self.any.layout().state()];
         let mut places = numbers.iter_mut();

@@ -46,7 +46,7 @@ pub trait Plan<S: Effect>: Sized {
     /// [`SetupError`] if the method can't step the scene.
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError>;
 
-    /// The initial motion, for plans whose advected or prescribed parameters depend on the rest of it.
+    /// The initial motion, for plans whose advected or prescribed parameters depend on the rest of the motion.
     fn begun(&self, _scene: &S, motion: MotionOf<S>) -> MotionOf<S> {
         motion
     }

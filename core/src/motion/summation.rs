@@ -111,7 +111,7 @@ pub trait Summation<G: LieGroup, A: Advected<G>>: Copy {
     /// `F⁻¹·w`. The momentum stays.
     fn turn(&mut self, increment: &G::Matrix);
 
-    /// The advected parameters after that turn.
+    /// The advected parameters after a turn of the body by this increment.
     fn turned(&self, increment: &G::Matrix) -> A;
 
     /// Adds a change to the momentum.

@@ -216,7 +216,7 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
 
     fn add_links(links: &mut Self::Links, others: &Self::Links, power: u32, half: &Self) {
         let zero = V::zero();
-        // The first of two is of the row of this body, the second of that of the next.
+        // A pair of links has a block in the row of this body and one in the row of the next.
         let raised = |block: &V::Square, body: usize| V::raised(&zero, block, power, &half.0[body]).1;
         for (k, (links, [upper, lower])) in links.iter_mut().zip(others).enumerate().take(N.saturating_sub(1)) {
             *links = [links[0] + raised(upper, k), links[1] + raised(lower, k + 1)];

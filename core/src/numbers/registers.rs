@@ -42,8 +42,8 @@ impl Register for Plain {
 pub(crate) trait OnRegisters {
     type Output;
 
-    /// Runs with registers of the type of `zero`; marked `#[hot]`, as all that it calls. Closures in it would be
-    /// compiled without the vector instructions.
+    /// Runs the computation with registers of the type of `zero`; Closures in it would be compiled without the vector
+    /// instructions.
     fn run<R: Register>(self, zero: R) -> Self::Output;
 }
 
@@ -53,7 +53,7 @@ pub(crate) trait OnRegisters {
 pub(crate) fn on_registers<K: OnRegisters>(kernel: K) -> K::Output {
     #[cfg(all(feature = "dispatch", target_arch = "x86_64", not(debug_assertions)))]
     if let Some(four) = pulp::x86::V3::try_new() {
-        return pulp::Simd::vectorize(four, avx2::Found(four, kernel));
+        return pulp::Simd::vectorize(four, avx2::FourKernel(four, kernel));
     }
     kernel.run(Plain::ZERO)
 }
@@ -87,9 +87,9 @@ mod avx2 {
         }
     }
 
-    pub(super) struct Found<K>(pub(super) V3, pub(super) K);
+    pub(super) struct FourKernel<K>(pub(super) V3, pub(super) K);
 
-    impl<K: OnRegisters> WithSimd for Found<K> {
+    impl<K: OnRegisters> WithSimd for FourKernel<K> {
         type Output = K::Output;
 
         #[hot]

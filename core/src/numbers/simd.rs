@@ -27,7 +27,7 @@ pub(crate) trait Kernel {
     /// of them.
     const VECTORS: Vectors;
 
-    /// Whether its numbers are lanes, whose vectors are stored and loaded all the time.
+    /// Whether the kernel's numbers are lanes, whose vectors are stored and loaded all the time.
     const IS_IN_LANES: bool = false;
 
     /// Runs the computation; marked `#[inline(always)]` except in builds with debug assertions.

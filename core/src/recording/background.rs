@@ -80,7 +80,7 @@ fn write_all(sink: &mut impl Sink, waiting: &Receiver<Work>, back: &SyncSender<V
             Work::End => return sink.end(),
         }
     }
-    // Dropped before its end: the sink isn't ended, so that the table doesn't look complete.
+    // A sink dropped before its end isn't ended, so that the table doesn't look complete.
     Ok(())
 }
 

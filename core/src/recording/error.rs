@@ -37,9 +37,9 @@ pub enum RunError {
     Energy {
         /// The time after the step, s.
         time: f64,
-        /// The energy before it, J.
+        /// The energy before the step, J.
         before: f64,
-        /// The energy after it, J.
+        /// The energy after the step, J.
         after: f64,
     },
     /// A requested time lies before the state, or before the time requested before it, or isn't finite.
@@ -84,7 +84,7 @@ pub enum RunError {
 pub struct RunReport {
     /// Number of steps made.
     pub steps: u64,
-    /// Number of their iterations, as counted by [`StepReport`](crate::motion::StepReport).
+    /// Number of iterations in the steps, as counted by [`StepReport`](crate::motion::StepReport).
     pub iterations: u64,
     /// The reason of the end.
     pub reason: Reason,

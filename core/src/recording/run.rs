@@ -86,7 +86,7 @@ struct Observers<'a, I: Integrator> {
 /// An observer of every `every`-th step.
 struct RegularObserver<'a, I: Integrator> {
     every: u64,
-    /// The next step that it observes.
+    /// The next step to be observed.
     due: u64,
     observer: Observer<'a, I>,
 }
@@ -94,7 +94,7 @@ struct RegularObserver<'a, I: Integrator> {
 /// An observer at requested times.
 struct TimedObserver<'a, I: Integrator> {
     times: Peekable<Box<dyn Iterator<Item = f64> + 'a>>,
-    /// The last of its times.
+    /// The last observed time.
     shown: Option<f64>,
     observer: Observer<'a, I>,
 }
@@ -441,7 +441,7 @@ where
             let (begun, mut progress) =
                 (reported(self.integrator.time(self.state)) / h, self.observers.progress.take());
             let mut told = 0.0;
-            // This condition comes after the user's, which are checked first.
+            // The condition of the end comes after the user's, which are checked first.
             self.observers.conditions.push(Box::new(move |now| {
                 let now = reported(now.time()) / h;
                 seen.set(now >= end);

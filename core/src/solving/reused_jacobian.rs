@@ -98,7 +98,7 @@ pub fn may_suffice<T: Real>(first: T, size: T) -> Mask<T> {
     (first * first * first).simd_le(size * (tolerance * tolerance))
 }
 
-/// Whether it was the last: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ REST ε|y|`. Arguments are squares.
+/// Whether the second update was the last: `2|u₁||u₂| max(|u₂|/|u₁|², 1) ≤ REST ε|y|`. Arguments are squares.
 #[hot]
 #[must_use]
 pub fn has_sufficed<T: Real>(first: T, second: T, size: T) -> Mask<T> {
@@ -136,7 +136,7 @@ impl Curvature {
         }
     }
 
-    /// Whether it was: [`has_sufficed`] with the larger of both estimates of `C`.
+    /// Whether the second update was the last: [`has_sufficed`] with the larger of both estimates of `C`.
     ///
     /// If `u₂` is all rounding, the estimate `C = |u₂|/|u₁|²` is too large. But an update `u₁` that hasn't converged is
     /// longer than `√ε|y|/8`, and with that `2|u₂|²/|u₁| ≤ ε|y|/16` for roundings of up to `512 ε|y|`.

@@ -26,7 +26,7 @@ pub enum Solvability {
     Certain,
     /// There is no solution.
     Impossible,
-    /// Undecided by the bounds, or there are none for this Lagrangian.
+    /// The bounds don't decide, or there are none for this Lagrangian.
     Open,
 }
 

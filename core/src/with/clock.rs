@@ -85,8 +85,8 @@ impl Clock {
         Self::of_lengths(orbit(anomaly % TAU, eccentricity, period, steps)).map(Self::repeated)
     }
 
-    /// The lengths back from this step to the first, which retrace a motion: for a stepper with `−h`, from a state that
-    /// it has adopted. `None` if the clock ends before this step.
+    /// A clock with the lengths back from this step to the first, which retrace a motion: `None` if the clock ends
+    /// before this step.
     #[must_use]
     pub fn reversed(&self, step: u64) -> Option<Self> {
         let round = self.lengths.len() as u64;

@@ -203,7 +203,7 @@ pub enum UnknownMethod {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Method {
-    /// The scheme of its steps.
+    /// The scheme of the steps.
     pub scheme: Scheme,
     /// Whether the sums of a state are [compensated](Stepper::compensated).
     pub compensated: bool,
@@ -259,7 +259,7 @@ const fn refused<T>(cause: &'static str) -> Result<T, SetupError> {
 }
 
 impl Method {
-    /// Whether it is the scene's own step without wrappers.
+    /// Whether the method is the scene's own step without wrappers.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         *self == Self { substeps: self.substeps.min(1), ..Self::default() }
@@ -284,7 +284,7 @@ impl Method {
         <S::Group as Steppable<S>>::stepper(self, scene, h)
     }
 
-    /// The composition of a scheme that every group has; none for the own step.
+    /// The scheme's composition, for groups other than SO(3); none where the scheme is the Lagrangian's own step.
     ///
     /// # Errors
     ///
@@ -432,7 +432,7 @@ where
 
 impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for SO3 {
     fn schemes(scene: &S) -> Vec<Scheme> {
-        // These schemes need a physical, constant inertia and a separable Lagrangian.
+        // The schemes of one body on SO(3) need a physical, constant inertia and a separable Lagrangian.
         let Ok(inertia) = Inertia::new(scene.inertia(&scene.advected())) else { return Vec::new() };
         let body = ExactBody::new(&inertia);
         if Stepper::split(scene.clone(), 1.0, body, SplittingScheme::STRANG).is_err() {

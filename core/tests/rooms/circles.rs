@@ -9,13 +9,13 @@ use std::path::Path;
 
 use super::{code, files, root};
 
-/// The circles that there are, and why. Lines may go, and none be added.
+/// The known circles of imports, and their reasons. Lines may go, and none be added.
 const CIRCLES: [(&str, &str); 1] = [(
     "core/scene/src/file/draws.rs core/scene/src/file/scene.rs",
     "a scene holds its ensemble, and an ensemble the member that its draws are put into",
 )];
 
-/// A path, by its names.
+/// A path as the list of its names.
 type Names = Vec<String>;
 
 fn is_no_letter(letter: char) -> bool {
@@ -26,7 +26,7 @@ fn first(text: &str) -> &str {
     text.split(is_no_letter).next().unwrap_or_default()
 }
 
-/// All paths of a tree of imports, with the name that each has here.
+/// All paths in a tree of imports, each with the name that it has in this file.
 fn leaves(tree: &str, before: &[String], found: &mut Vec<(Names, String)>) {
     let tree = tree.trim();
     let (head, rest) = tree.split_at(tree.find('{').unwrap_or(tree.len()));
@@ -56,16 +56,16 @@ fn leaves(tree: &str, before: &[String], found: &mut Vec<(Names, String)>) {
 
 /// A source of Rust.
 struct Source {
-    /// Its module.
+    /// The path of the file's module.
     module: Names,
-    /// Whether it has modules of its own, as `mod.rs` and `lib.rs` have.
+    /// Whether the file has modules of its own, as `mod.rs` and `lib.rs` have.
     is_page: bool,
-    /// The names that it defines, and those that are public.
+    /// The names defined in the file, and those that are public.
     defined: BTreeSet<String>,
     public: BTreeSet<String>,
-    /// Its imports and re-exports, with the name that each has here.
+    /// The file's imports and re-exports, each with the name that it has here.
     imports: Vec<(Names, String)>,
-    /// The paths that its own text uses: those of imports, not of re-exports, and those within lines.
+    /// The paths that the file's code uses: those of imports, not of re-exports, and those within lines.
     paths: Vec<Names>,
 }
 
@@ -128,7 +128,7 @@ struct Package {
 }
 
 impl Package {
-    /// By their paths, texts without comments and tests.
+    /// The sources of these texts, by their paths, without comments and tests.
     fn new(texts: &BTreeMap<String, String>) -> Self {
         let sources: Vec<Source> = texts.iter().map(|(path, code)| Source::new(path, code)).collect();
         let modules = sources.iter().enumerate().map(|(at, source)| (source.module.clone(), at)).collect();
@@ -142,7 +142,7 @@ impl Package {
         Self::new(&texts.collect())
     }
 
-    /// The file that a path leads to from another one, if it is of this package.
+    /// The file to which a path leads from another file, if it is in this package.
     fn resolved(&self, from: usize, path: &[String], depth: usize) -> Option<usize> {
         let source = &self.sources[from];
         let (mut at, mut rest) = (source.module.clone(), path);
@@ -176,7 +176,7 @@ impl Package {
         self.defining(file, name, depth)
     }
 
-    /// Where a name is defined that a module has, by itself or by what it imports.
+    /// The file that defines a name of a module, itself or by its imports.
     fn defining(&self, file: usize, name: &str, depth: usize) -> Option<usize> {
         let source = &self.sources[file];
         if source.defined.contains(name) || depth == 0 {
@@ -192,13 +192,13 @@ impl Package {
         all.find(|&other| self.sources[other].defined.contains(name)).or(Some(file))
     }
 
-    /// The files that one imports.
+    /// The files that a file imports.
     fn imported(&self, from: usize) -> BTreeSet<usize> {
         let source = &self.sources[from];
         let found = |path: &Names| {
             let to = self.resolved(from, path, 8)?;
             let page = &self.sources[to];
-            // Helpers that a page has for the files below it.
+            // A page's helpers for the files below it aren't imports.
             let is_below = page.is_page && source.module.starts_with(&page.module);
             let is_helper = is_below && !path.last().is_some_and(|name| page.public.contains(name));
             (to != from && !is_helper).then_some(to)
@@ -216,7 +216,7 @@ impl Package {
     }
 }
 
-/// The files that import each other, maybe by way of others.
+/// The files that import each other, directly or through others.
 fn circles(imports: &BTreeMap<&str, BTreeSet<&str>>) -> BTreeSet<String> {
     let mut reached = imports.clone();
     for all in reached.values_mut() {
@@ -250,7 +250,7 @@ fn circles_of_python(root: &Path, folder: &str) -> BTreeSet<String> {
     circles(&files.iter().map(String::as_str).zip(texts.iter().map(imported)).collect())
 }
 
-/// The folders of one with these sources in them.
+/// The folders in a folder that have these sources.
 fn folders(root: &Path, folder: &str, has: &str) -> Vec<String> {
     let paths = fs::read_dir(root.join(folder)).unwrap().map(|entry| entry.unwrap().path());
     let names = paths.filter(|path| path.join(has).is_dir()).map(|path| path.file_name().unwrap().to_owned());
@@ -261,7 +261,7 @@ fn folders(root: &Path, folder: &str, has: &str) -> Vec<String> {
 fn no_room_has_circles() {
     let Some(root) = root() else { return };
     let mut found = BTreeSet::new();
-    // Of these two each folder is a room; any other package is one.
+    // Each folder of these two packages is a room; any other package is one room.
     for sources in ["core/src", "macros/derivation/src"] {
         let package = Package::below(root, sources);
         found.extend(folders(root, sources, ".").iter().flat_map(|room| package.circles(&format!("{room}/"))));
@@ -274,7 +274,7 @@ fn no_room_has_circles() {
     assert_eq!(found, known, "files import each other (left); who ends a circle takes it out of the list (right)");
 }
 
-/// Two files, of which one defines the name in each of these ways, and the other imports it.
+/// A circle of two files is found for each way in which one defines a name and the other imports it.
 #[test]
 fn a_circle_is_found_however_a_name_is_made_and_imported() {
     let found = |texts: &[(&str, &str)]| {
@@ -301,7 +301,8 @@ fn a_circle_is_found_however_a_name_is_made_and_imported() {
             assert_eq!(found(&[page, ("one.rs", &one), ("two.rs", defined)]), BTreeSet::new(), "{one}");
         }
     }
-    // A page may re-export and have helpers for what is below it; what it makes public isn't to be imported from below.
+    // A page may re-export the names of files below it and have helpers for them; these files may not import its public
+    // names.
     let [helper, public] =
         ["fn help() {}\n", "pub fn help() {}\n"].map(|item| format!("mod one;\nuse one::One;\n{item}"));
     let one = ("one.rs", "use super::help;\npub struct One;\n");

@@ -3,17 +3,17 @@
 //! Coefficients and error estimate are those of Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, 2nd
 //! edition, II.5 and II.10.
 
-// The digits are those of the source, although a double has fewer.
+// Coefficients have the digits of the source, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use workbench::top_equations::State;
 
-use super::embedded::{Embedded, Row, combination, mean_square, plus, stages};
+use super::embedded::{EmbeddedMethod, Row, combination, mean_square, plus, stages};
 use super::rates::Rates;
 
 pub struct Dop853;
 
-impl Embedded for Dop853 {
+impl EmbeddedMethod for Dop853 {
     const NAME: &'static str = "DOP853";
     const POWER: i32 = 8;
     type Stages = [State; 12];

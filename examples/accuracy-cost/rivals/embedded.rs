@@ -13,7 +13,7 @@ use super::rates::Rates;
 pub type Row<const N: usize> = [(usize, f64); N];
 
 /// An embedded method, by its coefficients.
-pub trait Embedded: 'static {
+pub trait EmbeddedMethod: 'static {
     const NAME: &'static str;
     /// The power of the step by which the estimated error falls.
     const POWER: i32;
@@ -62,14 +62,14 @@ pub(super) use stages;
 
 /// One step of fixed length.
 #[inline]
-pub fn step<M: Embedded>(equations: &impl Rates, h: f64, y: &State) -> State {
+pub fn step<M: EmbeddedMethod>(equations: &impl Rates, h: f64, y: &State) -> State {
     plus(y, h, &M::mean(&M::stages(equations, h, y, equations.rate(y))))
 }
 
 /// Integrates from `y` over the time `t` with the method's own step control; `None` if it fails.
 ///
 /// The tolerance is relative and absolute at once, as all seven numbers are of the order of one or of the momentum.
-pub fn integrate<M: Embedded>(equations: &impl Rates, t: f64, tolerance: f64, mut y: State) -> Option<State> {
+pub fn integrate<M: EmbeddedMethod>(equations: &impl Rates, t: f64, tolerance: f64, mut y: State) -> Option<State> {
     let power = f64::from(M::POWER).recip();
     let mut rate = equations.rate(&y);
     let (mut done, mut h) = (0.0, initial_step(equations, &y, &rate, tolerance, power).min(t));

@@ -25,7 +25,7 @@ impl Rates for Equations {
 /// A top with a spring: `p' = p × Ω + w × m g ρ + k (1 − l/|d|) a × b`, where `b = Rᵀs` is the anchor in the body frame
 /// and `d = a − b`.
 #[derive(Clone, Copy)]
-pub struct Sprung {
+pub struct SpringRates {
     pub top: Equations,
     pub k: f64,
     /// The length at rest, m.
@@ -35,7 +35,7 @@ pub struct Sprung {
     pub anchor: [f64; 3],
 }
 
-impl Rates for Sprung {
+impl Rates for SpringRates {
     #[inline(always)]
     fn rate(&self, state: &State) -> State {
         let [a, b, c, d, ..] = *state;
@@ -60,14 +60,14 @@ impl Rates for Sprung {
 
 /// A satellite in the gradient of gravity of a far mass: `p' = p × Ω + (3 GM/r³) n × Jn`.
 #[derive(Clone, Copy)]
-pub struct Orbiting {
+pub struct SatelliteRates {
     pub moments: [f64; 3],
     pub inverse_moments: [f64; 3],
     /// `3 GM/r³`, s⁻².
     pub gradient: f64,
 }
 
-impl Rates for Orbiting {
+impl Rates for SatelliteRates {
     #[inline(always)]
     fn rate(&self, &[a, b, c, d, p1, p2, p3]: &State) -> State {
         let [j1, j2, j3] = self.moments;

@@ -3,17 +3,17 @@
 //! Coefficients are those of Ch. Tsitouras, *Runge–Kutta pairs of order 5(4) satisfying only the first column simplifying
 //! assumption*, Comput. Math. Appl. 62 (2011); `accuracy-cost.csv` has the order of each run.
 
-// The digits are those of the source, although a double has fewer.
+// Coefficients have the digits of the source, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use workbench::top_equations::State;
 
-use super::embedded::{Embedded, Row, combination, mean_square, plus, stages};
+use super::embedded::{EmbeddedMethod, Row, combination, mean_square, plus, stages};
 use super::rates::Rates;
 
 pub struct Tsitouras5;
 
-impl Embedded for Tsitouras5 {
+impl EmbeddedMethod for Tsitouras5 {
     const NAME: &'static str = "Tsitouras 5";
     const POWER: i32 = 5;
     type Stages = [State; 7];

@@ -2,17 +2,17 @@
 //!
 //! Coefficients are those of J. H. Verner, *Refuge for Runge–Kutta pairs*; `accuracy-cost.csv` has the order of each run.
 
-// The digits are those of the source, although a double has fewer.
+// Coefficients have the digits of the source, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use workbench::top_equations::State;
 
-use super::embedded::{Embedded, Row, combination, mean_square, plus, stages};
+use super::embedded::{EmbeddedMethod, Row, combination, mean_square, plus, stages};
 use super::rates::Rates;
 
 pub struct Verner9;
 
-impl Embedded for Verner9 {
+impl EmbeddedMethod for Verner9 {
     const NAME: &'static str = "Verner 9";
     const POWER: i32 = 9;
     type Stages = [State; 16];

@@ -4,7 +4,7 @@ use liestep::mechanics::{Effect as _, Term as _};
 use nalgebra::{Matrix3, Rotation3, Vector3, Vector6};
 
 use super::declaration::HeavyTop;
-use crate::run::{Method, Sample, Stopped};
+use crate::run::{EarlyEnd, Method, Sample};
 use crate::runge_kutta::change;
 
 /// Angles and their rates: precession `φ`, nutation `θ`, spin `ψ`, applied about `z`, `x'` and `z''`.
@@ -101,7 +101,7 @@ impl OnEulerAngles {
 }
 
 impl Method for OnEulerAngles {
-    fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
+    fn advance(&mut self, steps: u64) -> Result<u64, EarlyEnd> {
         let top = self.top;
         for _ in 0..steps {
             self.state += change(self.state, self.h, |state| {

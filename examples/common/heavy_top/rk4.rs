@@ -9,7 +9,7 @@ use liestep::motion::RightHandSide;
 use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3};
 
 use super::declaration::HeavyTop;
-use crate::run::{Method, Sample, Stopped};
+use crate::run::{EarlyEnd, Method, Sample};
 use crate::runge_kutta::change;
 use crate::top_equations::{Equations, State};
 
@@ -72,7 +72,7 @@ impl OnMatrix {
 }
 
 impl Method for OnQuaternion {
-    fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
+    fn advance(&mut self, steps: u64) -> Result<u64, EarlyEnd> {
         for _ in 0..steps {
             self.state = self.equations.rk4_step(self.h, &self.state);
         }
@@ -86,7 +86,7 @@ impl Method for OnQuaternion {
 }
 
 impl Method for OnMatrix {
-    fn advance(&mut self, steps: u64) -> Result<u64, Stopped> {
+    fn advance(&mut self, steps: u64) -> Result<u64, EarlyEnd> {
         for _ in 0..steps {
             self.state += change(self.state, self.h, |y| {
                 let (attitude, momentum) = apart(&y);

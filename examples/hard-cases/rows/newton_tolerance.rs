@@ -1,14 +1,14 @@
 //! P4: the effect of stopping Newton's iteration early.
 
 use declarations::Motion;
-use workbench::newton_tolerance::{EXPONENTS, Form, Guess, Left, by_the_library, run};
+use workbench::newton_tolerance::{Drifts, EXPONENTS, Form, Guess, by_the_library, run};
 
 use crate::rivals::started;
 use crate::row::{Effort, Failure, Row, short};
 
 const H: f64 = 0.01;
 
-fn told(name: &str, exponent: i32, left: &Left) -> String {
+fn told(name: &str, exponent: i32, left: &Drifts) -> String {
     format!(
         "{name}, 1e{exponent}: {:.2} iterations, drift {}, p₃ {}, p·w {}",
         left.iterations,
@@ -23,7 +23,7 @@ pub(crate) fn p4(effort: Effort) -> Result<Row, Failure> {
     let motion = Motion::looping();
     let (stepper, state) = started(&motion, H)?;
     let start = (state.momentum(), state.advected());
-    let Left { energy: drift, iterations, vertical, axial } = by_the_library(&stepper, state, steps)?;
+    let Drifts { energy: drift, iterations, vertical, axial } = by_the_library(&stepper, state, steps)?;
     let mut row = Row::new(
         "P4",
         "Newton's tolerance against the energy's drift, looping top, h = 0.01, a million steps",

@@ -49,7 +49,7 @@ pub(crate) fn t1(effort: Effort) -> Result<Row, Failure> {
     // The phase error grows with time, so the last time needs the smallest steps.
     for (t, coarsest) in [(1.0, 1.0 / 200.0), (10.0, 1.0 / 1600.0), (100.0, 1.0 / 3200.0)] {
         let (mut off, mut orders) = (0.0, Vec::new());
-        // At the last time each motion has ten million steps.
+        // Each motion has ten million steps up to the last time.
         let few = if effort.verdict_only && t > 50.0 { 1 } else { motions.len() };
         for motion in motions.iter().take(few) {
             let (order, _) = measured(|h| error(motion, t, h), coarsest)?;

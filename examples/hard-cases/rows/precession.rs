@@ -16,7 +16,7 @@ use crate::row::{Effort, Failure, Row};
 use crate::walk::orthogonality;
 
 /// The ranges of two quantities, and the times of the minima of the first.
-struct Seen {
+struct Ranges {
     tilt: (f64, f64),
     rate: (f64, f64),
     minima: Vec<f64>,
@@ -27,10 +27,10 @@ fn extended((least, most): (f64, f64), value: f64) -> (f64, f64) {
 }
 
 /// The tilt and the rate of precession between two times, by a method's steps of `h`.
-fn seen(body: &Body, method: &mut impl Method, h: f64, from: f64, to: f64) -> Result<Seen, Failure> {
+fn seen(body: &Body, method: &mut impl Method, h: f64, from: f64, to: f64) -> Result<Ranges, Failure> {
     method.advance(steps_in(from, h))?;
     let nothing = (f64::INFINITY, f64::NEG_INFINITY);
-    let mut seen = Seen { tilt: nothing, rate: nothing, minima: Vec::new() };
+    let mut seen = Ranges { tilt: nothing, rate: nothing, minima: Vec::new() };
     let mut before: Option<f64> = None;
     for step in steps_in(from, h)..=steps_in(to, h) {
         let Sample { attitude, momentum } = method.sample();
@@ -47,7 +47,7 @@ fn seen(body: &Body, method: &mut impl Method, h: f64, from: f64, to: f64) -> Re
     Ok(seen)
 }
 
-fn ours(motion: &Motion, h: f64, from: f64, to: f64) -> Result<Seen, Failure> {
+fn ours(motion: &Motion, h: f64, from: f64, to: f64) -> Result<Ranges, Failure> {
     let (stepper, state) = started(motion, h)?;
     seen(&Body::of(&motion.top), &mut Variational { stepper: &stepper, state }, h, from, to)
 }
@@ -167,7 +167,7 @@ fn late_path(method: &mut impl Method) -> Result<Path, Failure> {
         let next: Vector3<f64> = method.sample().attitude.column(2).into();
         path.tilt = extended(path.tilt, next.xy().norm().atan2(next.z));
         path.length = extended(path.length, next.norm());
-        // The sine also serves jumps of the azimuth by a full turn.
+        // The sine of a difference isn't affected by jumps of the azimuth by a full turn.
         let goes_forwards = (azimuth(&next) - azimuth(&tip)).sin() > 0.0;
         path.turns_back += u32::from(forwards && !goes_forwards);
         (tip, forwards) = (next, goes_forwards);

@@ -17,7 +17,7 @@ use workbench::measure::float;
 use crate::row::{Effort, Failure, Row, short};
 use crate::walk::{FARTHEST, Run};
 
-/// Adds the errors of a run: the criterion is for the library's unmodified step.
+/// Adds the rounding errors of a run to a row: the criterion is for the library's unmodified step.
 fn told(row: Row, name: &str, run: &Run, is_judged: bool) -> Row {
     let (worst, deviations) = (run.walk.worst, run.walk.attitude_deviations());
     let defect = format!("{name}: ‖RᵀR − I‖");

@@ -82,10 +82,10 @@ fn bodies(mut row: Row) -> Result<Row, Failure> {
 
 type Scene = Sum<PrincipalBody<f32>, Gravity<f32>>;
 /// The state of a scene in which gravity advects the vertical.
-type Turning = State<SO3<f32>, ((), Vector3<f32>)>;
+type TurningState = State<SO3<f32>, ((), Vector3<f32>)>;
 
 /// The top of a motion, and its initial state.
-fn started(motion: &Motion, h: f64) -> Result<(Stepper<Scene>, Turning), Failure> {
+fn started(motion: &Motion, h: f64) -> Result<(Stepper<Scene>, TurningState), Failure> {
     let top = &motion.top;
     let body = PrincipalBody { J_d: DiagonalNonstandardInertia::from_diagonal(top.J_d.diagonal().cast::<f32>())? };
     let gravity = Gravity { m: single(top.m), g: single(top.g), rho: top.rho.cast(), up: top.up.cast() };
@@ -156,7 +156,7 @@ fn at_rest(motion: &Motion) -> Result<bool, Failure> {
     for (gravity, attitude) in [(Gravity { g: 0.0, ..gravity }, tilted), (hanging, SO3::identity())] {
         let stepper = Stepper::new(body + gravity, 0.01)?;
         let mut state = stepper.start(attitude, Vector3::zeros())?;
-        let seen = |state: &Turning| (state.attitude(), state.momentum(), state.advected());
+        let seen = |state: &TurningState| (state.attitude(), state.momentum(), state.advected());
         let before = seen(&state);
         for _ in 0..1000 {
             stepper.step(&mut state)?;
@@ -183,8 +183,8 @@ fn there_and_back(motion: &Motion, h: f64) -> Result<[f64; 3], Failure> {
     Ok(errors.map(|error| error / EPSILON))
 }
 
-/// The largest of three medians over an octave. The distance is a walk of roundings, and neighbouring step sizes differ
-/// by a factor of ten.
+/// The largest of the medians of three errors over an octave of step sizes. The distance is a walk of roundings, and
+/// neighbouring step sizes differ by a factor of ten.
 fn median(motion: &Motion, h: f64) -> Result<f64, Failure> {
     let runs: Result<Vec<_>, Failure> =
         (0..9).map(|k| there_and_back(motion, h / 2_f64.powf(f64::from(k) / 8.0))).collect();
@@ -204,7 +204,7 @@ fn million(row: Row, motion: &Motion) -> Result<Row, Failure> {
     let (axial, vertical) = (state.momentum().z, state.momentum().dot(&state.advected().1));
     // The measurement is in double precision, whose rounding is negligible.
     let (moments, weight) = (motion.top.moments(), f64::from(single(motion.top.m * motion.top.g)));
-    let energy = |state: &Turning| {
+    let energy = |state: &TurningState| {
         let (p, w) = (state.momentum().cast::<f64>(), state.advected().1.cast::<f64>());
         0.5 * p.dot(&p.component_div(&moments)) + weight * w.dot(&motion.top.rho)
     };

@@ -16,11 +16,11 @@ fn rotation(axis: &Vector3<f64>, degrees: f64) -> SO3 {
     UnitQuaternion::from_scaled_axis(axis * degrees.to_radians()).into()
 }
 
-/// The results of all guesses.
-struct Seen {
+/// The results of Newton's iteration from all guesses.
+struct Tally {
     refused: u32,
-    /// The number of these whose reported determinant is negative; about a middle axis it may be positive, and the
-    /// trace decides.
+    /// The number of solutions with a negative determinant; about a middle axis it may be positive for the wrong root,
+    /// and the trace decides.
     negative: u32,
     traps: u32,
     wrong: u32,
@@ -28,7 +28,7 @@ struct Seen {
     from_below: bool,
 }
 
-impl Seen {
+impl Tally {
     /// Spins about each principal axis so fast that a step turns the body by 30°.
     fn trap<L>(&mut self, lagrangian: &L, w: &L::Advected) -> Result<(), Failure>
     where
@@ -61,7 +61,7 @@ impl Seen {
 }
 
 pub(crate) fn s3(_: Effort) -> Result<Row, Failure> {
-    let mut seen = Seen { refused: 0, negative: 0, traps: 0, wrong: 0, error: 0.0, from_below: true };
+    let mut seen = Tally { refused: 0, negative: 0, traps: 0, wrong: 0, error: 0.0, from_below: true };
     for moments in [[3.0, 3.0, 4.0], [2.0, 3.0, 4.5], [1.0, 2.0, 3.0], [1.0, 1.0, 1.0]] {
         seen.trap(&FreeBody::with_moments(moments), &())?;
     }
@@ -69,7 +69,7 @@ pub(crate) fn s3(_: Effort) -> Result<Row, Failure> {
     for top in [HeavyTop::thesis(), HeavyTop::asymmetric()] {
         seen.trap(&HeavyTop { g: 0.0, ..top }, &Vector3::z())?;
     }
-    let Seen { refused, negative, traps, wrong, error, from_below } = seen;
+    let Tally { refused, negative, traps, wrong, error, from_below } = seen;
     let row = Row::new("S3", "guess at 150° where the root is at 30°", "refused; the wrong root never comes out")
         .holds(
             &format!("{refused} of {traps} refused as WrongBranch (four bodies, two tops, three axes)"),

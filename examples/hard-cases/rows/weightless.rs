@@ -46,7 +46,8 @@ pub(crate) fn t8(_: Effort) -> Result<Row, Failure> {
         let (attitude, momentum, _) = moved(scene, &motion)?;
         apart = greater(apart, relative(&attitude, &free.0).max(relative(&momentum, &free.1)));
     }
-    // Two sums may round differently; over a thousand steps the attitude amplifies this to 1000^{3/2} ε.
+    // Sums of two effects may round differently from one; over a thousand steps the attitude amplifies this to
+    // 1000^{3/2} ε.
     let row = Row::new("T8", "no gravity, 1000 steps", "the free body to round-off")
         .at_most("g, m or ρ zero, against the free body", apart, 7e-12)
         .at_most("spatial momentum", kept, 5e-14);

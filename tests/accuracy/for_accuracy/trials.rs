@@ -1,4 +1,4 @@
-//! The cost of the trials of a choice, and their end.
+//! The cost of the trial runs of a choice by accuracy, and the ends of these runs.
 
 use core::ops::Add;
 
@@ -42,7 +42,7 @@ fn steps_too_long_to_be_solved_end_the_search_for_longer_ones() {
     let motion = Motion::read("chaotic");
     let accuracy = Accuracy { tolerance: 0.05, horizon: 30.0 };
     let stepper = ask(&motion, accuracy).unwrap();
-    // A search that continued to a finer reference would take thousands of runs.
+    // A search for a finer reference would take thousands of runs.
     assert!(stepper.choice().trials <= 60.0, "{}", stepper.choice());
 }
 
@@ -71,7 +71,7 @@ fn long_steps_without_a_solution_are_not_the_cause() {
     assert!(refusal.to_string().starts_with("at least 1e18 steps of the method `step`"), "{refusal}");
 }
 
-/// In so short a time the steps of order 2 underflow a double; a composition takes longer ones.
+/// The step of order 2 underflows a double in so short a time, while a composition takes longer ones.
 #[test]
 fn a_set_up_that_fails_for_shorter_steps_is_not_the_end() {
     let body = CayleyBody { J: Inertia::from_principal_moments(Vector3::new(1.0, 2.0, 2.5)).unwrap() };

@@ -13,7 +13,7 @@ use std::{env, fs, io};
 
 const ROUNDS: u32 = 7;
 
-/// The names and sources.
+/// The names and sources of the compiled declarations.
 const DECLARATIONS: [(&str, &str); 5] = [
     ("none", include_str!("compile_time/none.rs")),
     ("(3.13)", include_str!("compile_time/heavy_top.rs")),
@@ -92,7 +92,7 @@ impl Crate {
     }
 }
 
-/// Prints the times of all.
+/// Prints the times of all declarations.
 pub(crate) fn print() -> io::Result<()> {
     println!("{:<16}{:>12}{:>12}", "ms", "check", "build");
     for (name, source) in DECLARATIONS {

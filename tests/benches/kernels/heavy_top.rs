@@ -21,9 +21,9 @@ const WEIGHT: f64 = 9.81;
 const RHO: [f64; 3] = [0.0, 0.0, 1.0];
 const EFFORT: Effort = Effort { batch: 20_000, rounds: 300, counted: 10_000 };
 
-type Derived = (Stepper<HeavyTop>, State<SO3, Vector3<f64>>);
+type TopRun = (Stepper<HeavyTop>, State<SO3, Vector3<f64>>);
 
-fn derived() -> Result<Derived, Failure> {
+fn derived() -> Result<TopRun, Failure> {
     let inertia = DiagonalNonstandardInertia::from_principal_moments(MOMENTS.into())?;
     let top = HeavyTop { J_d: inertia, m: 1.0, g: WEIGHT, rho: RHO.into(), up: Vector3::z() };
     let stepper = Stepper::new(top, STEP)?;

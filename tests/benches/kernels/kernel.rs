@@ -130,7 +130,7 @@ pub(crate) fn arguments() -> Vec<String> {
     std::env::args().skip(1).filter(|argument| argument != "--bench").collect()
 }
 
-/// Does what these words ask for: `count NAME STEPS` runs one kernel and nothing else; `instructions` counts, nothing
+/// Measures as the words of the command line say: `count NAME STEPS` runs one kernel and nothing else; `instructions` counts, nothing
 /// times, and both take a part of the names that are wanted. The words in `table` lead the program to these groups.
 pub(crate) fn measure(table: &[&str], groups: Vec<Group>, words: &[&str]) -> Result<(), Failure> {
     if let ["count", name, steps] = words {

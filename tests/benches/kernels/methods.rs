@@ -6,7 +6,7 @@
 use core::hint::black_box;
 use std::rc::Rc;
 
-use accuracy_cost::methods::{self, Method, Prepared};
+use accuracy_cost::methods::{self, Method, PreparedRun};
 use accuracy_cost::scenes::Scene;
 
 use crate::kernel::{Effort, Group, Kernel};
@@ -28,8 +28,8 @@ fn kernel(scene: &Rc<Scene>, method: Method) -> Kernel {
     let (scene, method) = (Rc::clone(scene), Rc::new(method));
     Kernel::new(method.name.clone(), move || {
         let (scene, method) = (Rc::clone(&scene), Rc::clone(&method));
-        // It is set up once for all batches.
-        let mut ready: Option<(u32, Prepared)> = None;
+        // The stepper is constructed once for all batches.
+        let mut ready: Option<(u32, PreparedRun)> = None;
         Ok(move |steps: u32| {
             let run = match ready.take() {
                 Some((prepared, run)) if prepared == steps => run,

@@ -62,7 +62,7 @@ fn run(way: &str, steps: u32) -> Result<(), Failure> {
         "csv" => recorded!(Csv::new(std::io::sink())),
         "csv in a thread" => recorded!(Background::new(Csv::new(std::io::sink()))),
         _ => {
-            // The event never happens.
+            // The event of the benchmark never happens.
             let event = liestep::recording::Event::crossing();
             stepper.observed(&mut state).event(event, |now| now.momentum().x + 1e3, |_| ()).steps(steps)?;
         }

@@ -40,10 +40,10 @@ fn body() -> Result<NonstandardInertia, Failure> {
 }
 
 /// A stepper with its initial state.
-type Ready<M> = Result<(M, <M as Integrator>::State), Failure>;
+type SceneStart<M> = Result<(M, <M as Integrator>::State), Failure>;
 
 /// Eight scenes one after another, and in lanes.
-fn group<M>(name: impl Into<String>, scene: fn(usize) -> Ready<M>) -> Group
+fn group<M>(name: impl Into<String>, scene: fn(usize) -> SceneStart<M>) -> Group
 where
     M: Batchable<AutoF64x8> + Integrator<State: PartialEq + Debug> + 'static,
 {

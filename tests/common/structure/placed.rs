@@ -1,4 +1,4 @@
-//! Two bodies that are put at their places one by one, in either order, have the stages of one alone.
+//! Two bodies whose terms are placed one by one, in either order, have the stages of one declaration for both.
 
 use liestep::groups::{LieGroup, Retraction};
 use liestep::laws::samples::Random;

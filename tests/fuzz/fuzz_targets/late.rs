@@ -1,4 +1,4 @@
-//! Any text as a declaration that is read at run time: it is derived, or refused with a reason.
+//! Any text as a declaration that is read at run time: the result is a derivation or a refusal with its reason.
 #![no_main]
 
 use liestep_late::Declaration;

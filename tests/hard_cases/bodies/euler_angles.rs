@@ -13,7 +13,7 @@ fn samples() -> Vec<EulerAngles> {
     (0..20).map(|_| EulerAngles { angles: random.vector() + tilt, rates: random.vector() * 3.0 }).collect()
 }
 
-/// After the time `t`, to second order.
+/// The angles and rates after the time `t`, to second order.
 fn later(start: &EulerAngles, accelerations: &Vector3<f64>, t: f64) -> EulerAngles {
     EulerAngles { angles: start.angles + start.rates * t, rates: start.rates + accelerations * t }
 }

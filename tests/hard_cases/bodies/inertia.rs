@@ -1,4 +1,4 @@
-//! The two inertias `J = tr(J_d) I − J_d` and `J_d = ½ tr(J) I − J`, and what isn't the inertia of any body.
+//! The two inertias `J = tr(J_d) I − J_d` and `J_d = ½ tr(J) I − J`, and matrices that aren't the inertia of any body.
 
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop};
@@ -24,7 +24,7 @@ fn conversions_agree_with_the_integrals() {
     for _ in 0..100 {
         let (nonstandard, ordinary) = integrals(&mut random);
         let (j_d, j) = (NonstandardInertia::new(nonstandard).unwrap(), Inertia::new(ordinary).unwrap());
-        // Sums of ten terms.
+        // The bound is the rounding of sums of ten terms.
         assert!(relative(j_d.to_inertia().as_matrix(), &ordinary) < 1e-15);
         assert!(relative(j.to_nonstandard().as_matrix(), &nonstandard) < 2e-15);
         assert!(relative(j_d.to_inertia().to_nonstandard().as_matrix(), &nonstandard) < 2e-15);
@@ -32,7 +32,7 @@ fn conversions_agree_with_the_integrals() {
     }
 }
 
-/// Reading A of the thesis' body.
+/// Diagonals of `J_d` and principal moments construct the thesis' body, read as in case A.
 #[test]
 fn diagonals_and_principal_moments() {
     let (diagonal, moments) = (Vector3::new(2.0, 2.0, 1.0), Vector3::new(3.0, 3.0, 4.0));
@@ -50,7 +50,7 @@ fn nonstandard(diagonal: [f64; 3]) -> Result<Vector3<f64>, InertiaError> {
     let diagonal = Vector3::from(diagonal);
     let principal = DiagonalNonstandardInertia::from_diagonal(diagonal).map(|j_d| *j_d.diagonal());
     let full = NonstandardInertia::from_diagonal(diagonal).map(|j_d| j_d.as_matrix().diagonal());
-    // NaN differs from itself, its text doesn't.
+    // Texts are compared, as NaN differs from itself.
     assert_eq!(format!("{principal:?}"), format!("{full:?}"), "both types check alike");
     principal
 }
@@ -69,7 +69,7 @@ fn b6_a_negative_entry_violates_the_triangle_inequality() {
     assert!(matches!(error, InertiaError::TriangleInequality { smallest } if (smallest + 0.05).abs() < 1e-15));
     assert_eq!(DiagonalNonstandardInertia::from_principal_moments(moments).unwrap_err(), error);
     assert_eq!(NonstandardInertia::from_principal_moments(moments).unwrap_err(), error);
-    // A flat body isn't one, even when its zero was computed.
+    // A flat body is accepted, even when its zero is a rounded result.
     assert!(nonstandard([0.1 + 0.2 - 0.3, 1.0, 2.0]).is_ok());
     assert!(nonstandard([0.3 - (0.1 + 0.2), 1.0, 2.0]).is_ok());
 }
@@ -94,7 +94,7 @@ fn b6_what_is_not_symmetric() {
         for error in [NonstandardInertia::new(matrix).unwrap_err(), Inertia::new(matrix).unwrap_err()] {
             assert!(matches!(error, InertiaError::NotSymmetric { defect } if (defect - 1e-3).abs() < 1e-15));
         }
-        // What printing to fifteen digits leaves is forgiven, and removed.
+        // An asymmetry from printing fifteen digits is accepted, and removed.
         matrix[(row, column)] = symmetric[(row, column)] * (1.0 + 1e-15);
         let repaired = NonstandardInertia::new(matrix).unwrap();
         assert_eq!(repaired.as_matrix(), &repaired.as_matrix().transpose());

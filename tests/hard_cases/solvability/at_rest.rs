@@ -1,5 +1,5 @@
-//! Where nothing acts nothing happens, exactly: no formula divides by the angle of a step, by the momentum, by `w` or
-//! by the weight.
+//! Bodies at rest without any torque stay at rest exactly: no formula divides by the angle of a step, by the momentum,
+//! by `w` or by the weight.
 
 use declarations::HeavyTop;
 use liestep::{SO3, Stepper};
@@ -26,7 +26,7 @@ fn s4_upright_spin_turns_about_the_vertical_alone() {
     assert!(state.attitude().inverse().compose(&expected).log().norm() < 1e-13);
 }
 
-/// The vector that gravity acts along may be zero while the body turns: it is then a free body.
+/// A turning body whose direction of gravity is zero is a free body.
 #[test]
 fn s4_turning_without_a_vertical() {
     let top = HeavyTop { up: Vector3::zeros(), ..HeavyTop::asymmetric() };

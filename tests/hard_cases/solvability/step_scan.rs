@@ -9,7 +9,7 @@ use liestep::motion::DiscreteLiePoisson;
 use liestep::prelude::*;
 use nalgebra::Vector3;
 
-/// Other bodies, other directions: near the fold nothing but a rotation on the branch of the identity comes out, and
+/// Random bodies and directions near the fold: a step returns a rotation on the branch of the identity or an error, and
 /// `J_min ≤ h|a| ≤ J_max` at the fold.
 #[test]
 fn s1_random_momenta_step_up_to_the_fold() {
@@ -33,7 +33,7 @@ where
     let a = momentum + L::kick_before(&top.constants(fold), w);
     let moments = top.inertia(&top.advected()).symmetric_eigenvalues();
     let size = fold * a.norm();
-    // Six digits of the bisection.
+    // The bisection has six digits.
     assert!(size > moments.min() * 0.999_99 && size < moments.max() * 1.000_01, "{size} is outside {moments}");
     let mut last = 0.0;
     for fraction in [0.1, 0.5, 0.9, 0.99, 0.999] {

@@ -1,6 +1,6 @@
 //! A family of Lagrangians on each group with vectors, and one with tensors.
 
-// All items are visible in this crate alone.
+// Public items are for this test program alone.
 #![allow(unreachable_pub)]
 
 use checks::affine::Affine;
@@ -52,7 +52,7 @@ macro_rules! family {
         }
 
         impl<T: RealField + Copy> Continuous<T> {
-            /// The numbers of the seed, in any scalar.
+            /// The parameters of a random Lagrangian from a seed, in any scalar.
             pub fn random(seed: u64) -> Self {
                 let mut random = Random::new(seed);
                 let (metric, matrix, form): (SMatrix<f64, $n, $n>, SMatrix<f64, $n, $n>, SMatrix<f64, $n, $n>) =

@@ -69,7 +69,7 @@ macro_rules! on_every_group {
                 }
             }
 
-            /// The interpreted Lagrangians make the same steps, to the bit.
+            /// Lagrangians read at run time make the same steps as compiled ones, to the bit.
             #[test]
             fn late() {
                 for seed in 0..15 {

@@ -15,7 +15,7 @@ fn run(example: &str, arguments: &[&str]) -> Output {
     Command::new(program).current_dir(env!("CARGO_TARGET_TMPDIR")).args(arguments).output().unwrap()
 }
 
-/// Checks that it is refused with this message, without a panic and before a report.
+/// Checks that a command line is refused with this message, without a panic and before a report.
 #[track_caller]
 fn refused(example: &str, arguments: &[&str], message: &str) {
     let output = run(example, arguments);
@@ -51,11 +51,11 @@ fn steps_and_times() {
         "--time 1 is shorter than one --step 10; nothing would happen",
     );
     refused("heavy-top", &["--step", "1e300"], "--time 200 is shorter than one --step 1e300;");
-    // No body can turn by so much in a step.
+    // A step in which no body can turn so far.
     refused("heavy-top", &["--step", "5", "--time", "10", "--out", "steps"], "no solution at the step");
 }
 
-/// A folder that is a file, is below a file, or has no name.
+/// Output folders that are files, are below a file, or have no name.
 #[test]
 fn folders() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");

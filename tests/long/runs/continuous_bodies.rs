@@ -125,12 +125,12 @@ fn the_diamond_along_all_matrices_of_each_body() {
         assert!((moved.fixed_view::<3, 1>(0, 3) - of_place).norm() < tiny, "{moved} and {of_place}");
         assert!((turned[(0, 1)] - on_line).abs() < tiny, "{turned} and {on_line}");
         assert!(of_first.norm() > 0.1 && of_second.norm() > 0.1 && of_place.norm() > 0.1);
-        // The parts that vanish for rotations are tested, too.
+        // Parts of the inertia that vanish for rotations alone are tested, too.
         assert!((of_first + of_first.transpose()).norm() > 0.1);
     }
 }
 
-/// The discretisation of their `l` converges, at order two, to a solver's solution of the continuous equations.
+/// The discretised `l` of coupled bodies converges, at order two, to a solver's solution of the continuous equations.
 #[test]
 fn steps_of_bodies_that_feel_each_other() {
     let system = bodies::<f64>(3);

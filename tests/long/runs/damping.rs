@@ -1,6 +1,6 @@
-//! P6: damping takes energy and turns nothing over, however strong it is against the inertia and the step. Halves of a
-//! viscous torque at the two ends of a step, as the discrete Lagrange–d'Alembert principle has them at first sight,
-//! multiply a spin by `(1 − x/2)/(1 + x/2)` with `x = c h/J`, and fail this from `x = 2` on.
+//! P6: damping reduces the energy and reverses no turn, however strong it is compared with the inertia and the step.
+//! Halves of a viscous torque at the two ends of a step, as the discrete Lagrange–d'Alembert principle has them at
+//! first sight, multiply a spin by `(1 − x/2)/(1 + x/2)` with `x = c h/J`, and fail this from `x = 2` on.
 
 use checks::random::Random;
 use liestep::effects::{Drag, MagneticDamping, Torque};
@@ -10,7 +10,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 const STEP: f64 = 0.05;
 
-/// `c h` over a moment of inertia.
+/// The strengths of damping: `c h` over a moment of inertia.
 const STRENGTHS: [f64; 13] = [1e-3, 1e-2, 0.1, 0.5, 1.0, 1.9, 2.1, 5.0, 10.0, 1e2, 1e3, 1e4, 1e6];
 
 /// A body of ordinary shape, nearly a plate, nearly a rod, and a sphere.
@@ -28,10 +28,10 @@ fn magnetic_damping(k: f64, field: Vector3<f64>, moments: [f64; 3]) -> MagneticD
     MagneticDamping { k, field, J: Inertia::from_principal_moments(moments.into()).unwrap() }
 }
 
-/// Below, squares of Newton's unknown are no longer numbers.
+/// The velocity below which squares of Newton's unknown underflow.
 const NOTHING: f64 = 1e-140;
 
-/// The spins about one principal axis, from 1.5 rad/s on, until nothing is left of them.
+/// The velocities about one principal axis, from 1.5 rad/s down to underflow.
 fn spins<L: Regular<Scalar = f64, Group = SO3>>(scene: L, axis: usize, count: usize) -> Vec<f64> {
     let stepper = Stepper::new(scene, STEP).unwrap();
     let mut state = stepper.start(SO3::identity(), Vector3::ith(axis, 1.5)).unwrap();
@@ -48,13 +48,13 @@ fn spins<L: Regular<Scalar = f64, Group = SO3>>(scene: L, axis: usize, count: us
     spins
 }
 
-/// `c h/J` on every axis of every body, over nine powers of ten.
+/// A spin decays without changing its sign, for `c h/J` over nine powers of ten on every axis of every body.
 #[test]
 fn p6_a_spin_decays_and_keeps_its_sign() {
     for moments in BODIES {
         for (axis, x) in (0..3).flat_map(|axis| STRENGTHS.map(|x| (axis, x))) {
             let c = x * moments[axis] / STEP;
-            // Across the field the damping is that of drag.
+            // The damping about an axis across the field is that of drag.
             let field = Vector3::ith((axis + 1) % 3, 2.0);
             let runs = [
                 spins(body(moments) + drag(c, moments), axis, 2000),
@@ -87,15 +87,15 @@ fn rise<L: Regular<Scalar = f64, Group = SO3>>(scene: L, velocity: Vector3<f64>)
     rise
 }
 
-/// In any turn: of a free body with drag the energy falls in every step of less than 158°, for every physical inertia.
-/// In a field it stays where there is nothing left but a turn about that.
+/// The energy of a free body with drag falls in every step of less than 158°, in any turn and for every physical
+/// inertia. In a field it stays where there is nothing left but a turn about that.
 #[test]
 fn p6_energy_falls() {
     let mut r = Random::new(6);
     for moments in BODIES {
         for x in STRENGTHS {
             for sample in 0..20 {
-                // Up to 60° a step without the damping.
+                // The velocity would turn the body by up to 60° a step without the damping.
                 let velocity = r.direction() * (1.0 / STEP) * r.signed().abs();
                 let c = x * moments[sample % 3] / STEP;
                 let most = rise(body(moments) + drag(c, moments), velocity);
@@ -138,7 +138,7 @@ fn p6_a_field_leaves_a_turn_about_the_major_axis() {
     for (k, excess) in [(0.2, 1e-12), (20.0, 0.01), (2e6, 0.5)] {
         let stepper = Stepper::new(body(moments) + magnetic_damping(k, field, moments), STEP).unwrap();
         let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.3, -0.2));
-        // Nearly about the minor axis.
+        // The body turns nearly about its minor axis.
         let mut state = stepper.start(attitude, Vector3::new(2.0, 0.1, 0.1)).unwrap();
         let along = state.momentum_along(&field);
         let least = along * along / (2.0 * 4.5);

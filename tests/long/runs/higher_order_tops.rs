@@ -20,10 +20,10 @@ fn sixth() -> SixthOrderTop {
     body()
 }
 
-/// Relative changes: of the energy's mean between the first and the last tenth, and at the end of `w·w`, `p·w` and
-/// `p₃`.
+/// Relative changes over a run: of the energy's mean between the first and the last tenth, and at the end of `w·w`,
+/// `p·w` and `p₃`.
 #[derive(Debug)]
-struct Kept {
+struct Changes {
     energy: f64,
     casimirs: f64,
     spin: f64,
@@ -32,7 +32,7 @@ struct Kept {
 fn kept<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Regular>(
     lagrangian: L,
     h: f64,
-) -> Kept {
+) -> Changes {
     let stepper = Stepper::new(lagrangian, h).unwrap();
     let attitude = UnitQuaternion::from_scaled_axis(Vector3::new(0.8, 0.0, 0.0));
     let mut state = stepper.start(attitude, Vector3::new(0.5, 2.15, 12.09)).unwrap();
@@ -48,14 +48,14 @@ fn kept<L: DiscreteLagrangian<Scalar = f64, Group = SO3, Advected = Vector3<f64>
     mean(&mut state, 8 * (STEPS / 10));
     let last = mean(&mut state, STEPS / 10);
     let casimir = |state: &liestep::motion::Motion<SO3, Vector3<f64>>| state.momentum().dot(&state.advected());
-    Kept {
+    Changes {
         energy: (last / first - 1.0).abs(),
         casimirs: (state.advected().norm_squared() - 1.0).abs().max((casimir(&state) / casimir(&start) - 1.0).abs()),
         spin: (state.momentum().z / start.momentum().z - 1.0).abs(),
     }
 }
 
-fn assert_kept(found: &Kept) {
+fn assert_kept(found: &Changes) {
     println!("{found:?}");
     assert!(found.energy < 1e-5 && found.casimirs < 1e-12 && found.spin < 1e-12);
 }

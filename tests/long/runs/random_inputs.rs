@@ -159,7 +159,7 @@ fn check_setup_error(top: &HeavyTop, h: f64, error: &SetupError) -> &'static str
             "setup: invalid step"
         }
         SetupError::NonFiniteConstant => {
-            // The product of all of them is a constant.
+            // The product of mass, gravitational acceleration and lever is a constant of the step, and may overflow.
             let numbers = [&[top.m, top.g], top.rho.as_slice()].concat();
             assert!(extremes(&numbers).0 > 1e90, "{top:?}");
             "setup: constant not finite"

@@ -1,5 +1,5 @@
-//! The rows of the table that take more than a second: what is measured and every bound are those of `cargo run -p liestep-hard-cases --example hard-cases`, which prints
-//! them beside what other methods do.
+//! The rows of the table of hard cases that take more than a second, with the bounds of
+//! `cargo run -p liestep-hard-cases --example hard-cases`, which prints them beside other methods.
 
 use cases::report::assert_met;
 use cases::row::Effort;
@@ -14,7 +14,7 @@ macro_rules! rows {
             }
         )+
 
-        /// Rows are tests here or in `tests/hard_cases`, and none is left out.
+        /// Every row is a test, here or in `tests/hard_cases`.
         #[test]
         fn all_rows_are_tests() {
             assert_eq!(rows::LONG, [$($id),+]);

@@ -13,7 +13,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 type TopMotion = liestep::motion::Motion<SO3, Vector3<f64>>;
 
-/// Without a cure 3·10⁻¹² for a sphere and 7·10⁻¹² for the symmetric body, and more the longer it turns.
+/// Steps of a motion whose rounding errors add up without compensation: to 3·10⁻¹² for a sphere and 7·10⁻¹² for the
+/// symmetric body, and more the longer it turns.
 const STEPS: u32 = 4_000_000;
 
 /// The moments of a sphere, and of the thesis' body.
@@ -28,7 +29,7 @@ fn start() -> (UnitQuaternion<f64>, Vector3<f64>) {
     (UnitQuaternion::from_scaled_axis(Vector3::new(0.8, -0.3, 0.1)), Vector3::new(0.5, 2.0, 12.0))
 }
 
-/// What T3 allows in 10⁸ steps.
+/// Asserts the bounds that T3 allows in 10⁸ steps.
 fn assert_kept(name: &str, start: &TopMotion, end: &TopMotion) {
     let length = (end.advected().norm_squared() - 1.0).abs();
     let vertical = |state: &TopMotion| state.momentum().dot(&state.advected());
@@ -38,12 +39,12 @@ fn assert_kept(name: &str, start: &TopMotion, end: &TopMotion) {
     println!("{name}: ‖RᵀR − I‖ {orthogonality:.1e}, |w|² {length:.1e}, p·w {vertical:.1e}, R p {momentum:.1e}");
     assert!(orthogonality <= 2e-12, "{name}: ‖RᵀR − I‖ = {orthogonality:e}");
     assert!(length <= 3e-12 && vertical <= 3e-12 && momentum <= 3e-12, "{name}: {length:e} {vertical:e} {momentum:e}");
-    // The two haven't parted: `w` is what the attitude sees.
+    // The advected vector has not drifted away from the attitude: `w` is what the attitude sees.
     let seen = end.attitude().as_matrix().row(2).transpose();
     assert!((end.advected() - seen).norm() <= 2e-12, "{name}");
 }
 
-/// Each body makes these steps.
+/// Makes these steps of each body.
 fn turn<I>(method: &str, steps: u32, stepper: impl Fn(HeavyTop, [f64; 3]) -> (I, I::State))
 where
     I: Integrator<Motion = Motion<SO3, Vector3<f64>>>,
@@ -56,7 +57,7 @@ where
     }
 }
 
-/// With the state that it starts with.
+/// A stepper with its initial state.
 macro_rules! started {
     ($stepper:expr) => {{
         let stepper = $stepper.unwrap();

@@ -46,7 +46,7 @@ struct OneSidedElasticFlow {
     metric: CovariantTensor<f64, 2>,
 }
 
-// A composition requires these constants at compile time: here they are false.
+// A composition takes only self-adjoint declarations, by a constant at compile time: these aren't self-adjoint.
 const _: () = assert!(!OneSidedUnderwaterBody::SELF_ADJOINT && !OneSidedElasticFlow::SELF_ADJOINT);
 
 fn assert_first_order(errors: &[(f64, f64)]) {

@@ -33,7 +33,7 @@ pub struct HeavyTop {
     up: Vector3<f64>,
 }
 
-/// A force, for the same test.
+/// A force with a prescribed torque, without the standard library.
 #[force(group = SO3, given(u = torque), work = 0.5 * h * u * (eta + eta_next)[2])]
 #[derive(Clone, Copy, Debug)]
 pub struct Wheel {

@@ -50,7 +50,8 @@ mod of_a_known_name {
     use nalgebra::{RealField, SMatrix};
 
     liestep::groups::matrix_group! {
-        /// The squeezes of the plane, and not the translations of a line.
+        /// A user's group may have the name of a library's group: here squeezes of the plane, not translations of a
+        /// line.
         pub type R1 = [[[1.0, 0.0], [0.0, -1.0]]];
 
         fn relation<T: RealField + Copy>(m: &SMatrix<T, 2, 2>) -> T {

@@ -118,7 +118,7 @@ where
 #[derive(Clone, Copy)]
 #[allow(dead_code)]
 #[lagrangian(
-    // The last argument comes first.
+    // The arguments are in an unusual order, the last one first.
     l_d = ((F_1 - I) * J_1 * (F_1 - I).transpose()).trace() / (2.0 * h)
         + ((F_2 - I) * J_2 * (F_2 - I).transpose()).trace() / (2.0 * h)
         + 0.5 * h * k * (Q.trace() + (F_1.transpose() * Q * F_2).trace()),
@@ -138,7 +138,7 @@ pub struct Adorned {
     J_1: NonstandardInertia,
 }
 
-// Names of groups and keywords are names, too.
+// Names of groups and keywords may be names of increments.
 #[lagrangian(
     group(r#fn = SO3, R1 = SO3),
     advected(r#type = R1.seen_from(r#fn)),
@@ -214,7 +214,7 @@ struct Universal {
 )]
 #[derive(Clone)]
 struct Cardan {
-    /// m.
+    /// Point of the body above, m.
     pub above: Vector3<f64>,
     below: Vector3<f64>, // m
     #[allow(unused)]
@@ -281,7 +281,8 @@ pub fn main() {
         moved(Named { J_1, J_2, r#in: k }),
         moved(FromAMacro { J_1, J_2, k }),
     ];
-    // Ten steps, each solved to roundings: momenta of one step differ by some 1e-15, in double and 1e-7 in single precision.
+    // Ten steps agree, each solved to roundings: momenta of one step differ by some 1e-15 in double and by 1e-7 in
+    // single precision.
     assert!(others.iter().all(|other| (other - plain).norm() < 1e-12 * plain.norm()), "{plain} {others:?}");
     let [single_1, single_2] = [[2.0, 2.0, 1.0], [1.0, 2.0, 1.5]]
         .map(|J: [f32; 3]| NonstandardInertia::<f32>::from_diagonal(J.into()).unwrap());
@@ -295,10 +296,10 @@ pub fn main() {
     let places = (place(0.3, Vector3::x()), place(-0.5, Vector3::y()));
     let gap = Universal { above, below, axis, normal }.gap(&places.0, &places.1);
     let other = Cardan { above, below, axis, normal }.gap(&places.0, &places.1);
-    // Sums in another order, of numbers near one.
+    // The bound is the rounding of sums in another order, of numbers near one.
     assert!(gap.norm() > 0.1 && (gap - other).norm() < 1e-15, "{gap} {other}");
 
-    // Roundings of twenty steps, of momenta of some ten.
+    // The bounds are roundings of twenty steps, for momenta of about ten.
     assert!(kept::<{ Row::BODIES }>(J_1) < 1e-13 && kept::<5>(J_2) < 1e-13);
     assert_eq!(Row::TIED, Along::<3>::of([Alike { k: 1.0 }]));
     let _ = Friction { c: 1.0 };

@@ -21,7 +21,7 @@ fn start(text: &str) -> Sample {
     parse("a.toml", text).unwrap().first(1).unwrap().samples()[0].clone()
 }
 
-/// Body to space.
+/// The attitude of a scene's start, body to space.
 fn attitude(line: &str) -> Matrix3<f64> {
     *start(&text(line)).bodies[0].attitude.as_matrix()
 }

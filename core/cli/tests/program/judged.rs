@@ -144,7 +144,7 @@ fn springs_of_length_zero() {
     assert!(last(&run).energy.abs() < 1e-30);
 }
 
-/// A rod that is thrown about its joint.
+/// A scene with a rod that is thrown about its joint.
 const THROWN: &str = include_str!("scenes/thrown.toml");
 
 /// The nearest start preserves attitudes and angular velocities where shifts suffice.

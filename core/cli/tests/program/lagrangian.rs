@@ -18,7 +18,7 @@ fn it_has_the_rows_of_the_librarys_effects() {
     let folder = folder("lagrangian");
     for method in ["", "method = { composition = \"Suzuki 4\" }\n"] {
         let [own, library] = [TOP, BY_EFFECTS].map(|text| rows(&folder, &format!("{text}{method}")));
-        // Energies are summed in another order.
+        // Energies are compared to rounding, as they are summed in another order.
         let motion = |rows: &[Vec<f64>]| rows.iter().map(|row| row[..4].to_vec()).collect::<Vec<_>>();
         assert_eq!((own.len(), motion(&own)), (201, motion(&library)));
     }
@@ -76,7 +76,7 @@ fn a_force_of_its_own() {
     let drawn = "[ensemble]\nmembers = 4\ndraw.force.tau = [0, 0, { from = 0, to = 1 }]\n";
     fs::write(folder.join("drawn.toml"), format!("{BY_EFFECTS}{force}{drawn}")).unwrap();
     assert!(printed(&folder, &["ensemble", "drawn.toml", "--out", "."]).contains('4'));
-    // A step of all terms is one text.
+    // The C code of a step with all terms is one text.
     let c = printed(&folder, &["derive", "drawn.toml", "--c"]);
     assert!(c.starts_with("/* A step of PrincipalBody + Gravity + Force on SO3."), "{c}");
     assert!(printed(&folder, &["derive", "drawn.toml"]).contains("gravity\n"));

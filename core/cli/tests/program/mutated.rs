@@ -83,7 +83,7 @@ fn mutated(seed: &str, random: &mut Random) -> String {
         match random.below(8) {
             0 => drop(letters.drain(at..(at + 1 + random.below(12)).min(letters.len()))),
             1 => drop(letters.splice(at..at, WORDS[random.below(WORDS.len())].chars())),
-            // Replaces a value or a key.
+            // The mutation replaces a value or a key.
             2 => drop(letters.splice(start..end, WORDS[random.below(WORDS.len())].chars())),
             3 => {
                 let from = random.below(letters.len());
@@ -94,7 +94,7 @@ fn mutated(seed: &str, random: &mut Random) -> String {
                 let other = random.below(letters.len());
                 letters.swap(at, other);
             }
-            // Replaces a digit of the next number.
+            // The mutation replaces a digit of the next number.
             _ => {
                 let digit = letters[at..].iter().position(char::is_ascii_digit);
                 if let Some(digit) = digit {

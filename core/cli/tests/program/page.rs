@@ -47,7 +47,7 @@ fn a_table_is_replayed() {
     let table = "t,q_w,q_x,q_y,q_z,\"drag, N\",energy\n0,1,0,0,0,inf,NaN\n1,1,0,0,0,1e-3,2.5\n2,1,0,0,0,-inf,NaN\n";
     fs::write(folder.join("gaps.csv"), table).unwrap();
     printed(&folder, &["replay", "gaps.csv", "--out", "."]);
-    // NaN, 0 and NaN, in single precision.
+    // The energies NaN, 0 and NaN, in single precision.
     let energy = "{name: \"energy\", values: \"AADAfwAAAAAAAMB/\"}";
     assert!(fs::read_to_string(folder.join("gaps.html")).unwrap().contains(energy));
 }
@@ -87,7 +87,7 @@ fn a_browser_shows_it() {
     assert_eq!(document.matches("<canvas").count(), 5);
     assert!(document.contains("<output>1.50 s</output>"), "{document}");
     shown("top.html", &["--screenshot=top.png"]);
-    // An empty page has a tenth of that.
+    // The picture of an empty page has a tenth of that size.
     assert!(fs::metadata(folder.join("top.png")).unwrap().len() > 40_000);
 
     // The page plays, can be turned and zoomed, and goes to the time of a click in a chart.

@@ -315,7 +315,7 @@ fn results_of_several_bodies() {
     let folder = folder("several");
     fs::write(folder.join("held.toml"), HELD).unwrap();
     fs::write(folder.join("top.toml"), TOP).unwrap();
-    // A page plays one body; the other results are written.
+    // Only the body of `top.toml` has a page; the other results are written for both files.
     assert!(called(&folder, &["run", "top.toml", "held.toml", "--html", "--out", "pages"]).status.success());
     let there = ["top.html", "held.svg", "held.html"].map(|name| folder.join("pages").join(name).exists());
     assert_eq!(there, [true, true, false]);

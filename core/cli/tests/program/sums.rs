@@ -94,7 +94,7 @@ fn sums(count: usize) {
     for number in 0..count {
         let (own, has_force) = (random.below(3) == 0, random.below(2) == 0);
         let mut parts = vec![body(own, ["m", "g", "rho"]), RUN.to_owned()];
-        // A Lagrangian of the file's own has no other effects.
+        // A Lagrangian of the file's own replaces all effects.
         let effects = if own { 0 } else { 1 + random.below(4) };
         let names = random.shuffled((0..10).collect());
         parts.extend(names[..effects].iter().map(|name| effect(*name, &mut random)));

@@ -96,7 +96,7 @@ fn a_gyroscope_in_a_top() {
     let guess = top(1.0, rho * 0.8);
     let start = guess.start(turned([0.7, 0.2, 0.0]), Vector3::new(0.4, 1.1, 3.9)).expect("a start");
     let readings = |step: usize, motion: &Motion<SO3, _>, _: &[f64]| {
-        // The inertia is known, so that any of the steppers has this velocity.
+        // The inertia is known, so that the stepper of any inertia returns this velocity.
         ((truth.velocity(motion) - read[step]) / 1e-3).as_slice().to_vec()
     };
     let task = |steps| {

@@ -87,7 +87,7 @@ fn multipliers_are_the_price_of_the_target() {
             }
         };
         let slope = (beside(1e-4) - beside(-1e-4)) / 2e-4;
-        // A multiplier is minus the derivative.
+        // A multiplier is minus the derivative of the least cost.
         let found = -plan.multipliers[k];
         assert!((found - slope).abs() < 1e-6 * (1.0 + slope.abs()), "{k}: {found}, not {slope}");
     }
@@ -342,7 +342,7 @@ struct Wheel {
     torque: f64,
 }
 
-/// The least effort from rest to a spin `J_3 ω` by such a torque is that of a constant one, `½ (J_3 ω)²/T`.
+/// The least effort from rest to a spin `J_3 ω` by a declared torque is that of a constant one, `½ (J_3 ω)²/T`.
 #[test]
 fn what_a_step_is_given_is_chosen() {
     let J_d = NonstandardInertia::from_principal_moments(Vector3::new(2.0, 3.0, 4.0)).expect("a body");

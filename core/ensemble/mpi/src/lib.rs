@@ -36,7 +36,7 @@ const FIRST: i32 = 0;
 /// The engine of all processes of the job.
 pub struct Mpi {
     world: SimpleCommunicator,
-    /// Dropping it ends MPI.
+    /// MPI ends when this field is dropped.
     _universe: Universe,
 }
 

@@ -11,7 +11,7 @@ use crate::code::Backend;
 /// A stage, and the linear extrapolation of its coordinates and of the previous stage's to the next stage's guess.
 #[derive(Clone, Copy, Debug)]
 struct Stage {
-    /// The place of its constants.
+    /// The index of the stage's constants.
     constants: usize,
     /// The factor of this stage's coordinates in a guess without the previous stage.
     scale: f64,

@@ -59,7 +59,7 @@ pub(super) struct Pivots {
     pub(super) least: (f64, usize),
     /// The product of all.
     pub(super) determinant: f64,
-    /// Whether a solution by them is finite.
+    /// Whether a solution by the factors is finite.
     pub(super) is_finite: bool,
 }
 

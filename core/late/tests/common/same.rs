@@ -62,7 +62,7 @@ where
     assert_whole(compiled, late.declaration(), seed);
 }
 
-/// Guesses of these are made of a longer history in the library, so that they agree to rounding.
+/// Declarations whose guesses use a longer history in the library, so that steps agree to rounding.
 const WITH_HISTORY: [&str; 1] = ["PacedTop"];
 
 /// Numbers agree, to the bit or to rounding.
@@ -143,7 +143,7 @@ where
         assert_near(&found, &list(&expected.spatial_momentum()), false, "momentum in space");
         assert_near(&[whole.energy(&state)], &[one.energy(&expected)], is_exact, &format!("energy of {what}"));
         let defects = [whole.defect(&state), expected.orthogonality_defect()];
-        // Roundings of a relation are those of squares of entries.
+        // The defect is compared to the rounding of squares of entries.
         let entries = list(&expected.attitude().matrix());
         let size = 1.0 + entries.iter().map(|entry| entry * entry).sum::<f64>();
         assert!((defects[0] - defects[1]).abs() < 1e-12 * size, "{what}: {defects:?}");

@@ -86,9 +86,9 @@ class Summand:
     @classmethod
     def of(
         cls, text: str, numbers: Mapping[str, Value], name: str, directions: Iterable[str] = ()
-    ) -> tuple[Summand, _native.Derived]:
+    ) -> tuple[Summand, _native.Derivation]:
         """Derives and proves the text, and compares its parameters with what is given."""
-        derived, lengths = _native.Derived(text), {}
+        derived, lengths = _native.Derivation(text), {}
         for field, length in derived.parameters:
             lengths[field] = length
             if field not in numbers:
@@ -105,9 +105,9 @@ class Summand:
             value = _direction(name, value)
         return replace(self, numbers=tuple((own, value if own == name else old) for own, old in self.numbers))
 
-    def derived(self) -> _native.Derived:
+    def derived(self) -> _native.Derivation:
         """The derivation of the text, which is made once."""
-        return _native.Derived(self.text)
+        return _native.Derivation(self.text)
 
 
 #: Summands and parameters by their numbers.
@@ -131,7 +131,7 @@ class Sum:
     has_pace: bool
 
     @classmethod
-    def of(cls: type[AnySum], summand: Summand, derived: _native.Derived) -> AnySum:
+    def of(cls: type[AnySum], summand: Summand, derived: _native.Derivation) -> AnySum:
         """A sum of one summand."""
         return cls((summand,), derived.group, "force" if derived.is_force else "lagrangian", derived.has_pace)
 
@@ -167,7 +167,7 @@ class Sum:
         """The equations as LaTeX, an ``align*`` for each summand."""
         return "\n".join(summand.derived().latex for summand in self.summands)
 
-    def _terms(self) -> list[tuple[_native.Derived, list[float]]]:
+    def _terms(self) -> list[tuple[_native.Derivation, list[float]]]:
         return [
             (summand.derived(), [number for _, (_, value) in summand.numbers for number in value])
             for summand in self.summands

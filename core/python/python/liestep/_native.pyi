@@ -4,8 +4,8 @@ from typing import Any
 
 How = tuple[str, str, bool, int]
 
-class Derived:
-    def __new__(cls, text: str) -> Derived: ...
+class Derivation:
+    def __new__(cls, text: str) -> Derivation: ...
     @property
     def derivation(self) -> str: ...
     @property
@@ -30,7 +30,7 @@ class Scene:
     def ask(self, tolerance: float, start: Any, course: Any) -> dict[str, Any]: ...
     def members(self, h: float, how: How, start: Any, draws: Any, plan: Any) -> dict[str, Any]: ...
 
-Terms = list[tuple[Derived, list[float]]]
+Terms = list[tuple[Derivation, list[float]]]
 
 class View:
     @property

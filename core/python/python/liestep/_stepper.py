@@ -287,13 +287,8 @@ class Stepper:
 
     def _about(self) -> str:
         kind, scheme, compensated, substeps = self.method
-        known = {
-            "step": "", "collocation": f" by {scheme} stages",
-            "density": f" at first, of a density by the turn from {scheme} rad/s on",
-        }
-        by = known.get(kind, f" by the {kind} {scheme}")
         rest = (", compensated" if compensated else "") + (f", or {substeps} parts" if substeps > 1 else "")
-        return f"steps of {self.step:g} s{by}{rest}"
+        return f"steps of {self.step:g} s{_by(kind, scheme)}{rest}"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _again, (self.term, self.step, self.method)
@@ -409,7 +404,7 @@ class _Search(Stepper):
             return self._by_own_steps(start, course, names)
         made = scene.ask(self.tolerance, start, course)
         kind, name = made["method"]
-        about = f"steps of {made['step']:.4g} s by {' '.join(filter(None, (kind, name)))}"
+        about = f"steps of {made['step']:.4g} s{_by(kind, name)}"
         run = _finished(self.term, made["step"], made, names, about)
         run.method = _method(kind, name)
         return run
@@ -438,6 +433,15 @@ class _Search(Stepper):
 def accurate(term: Sum, tolerance: float, **run: Any) -> Run:
     """As `Stepper.run`, by the method and the step that trial runs have found; `Run.choice` has them all."""
     return _Search(term, tolerance).run(**run)
+
+
+def _by(kind: str, scheme: object) -> str:
+    """The method in the text of a stepper or a run; names of processed schemes begin with their kind."""
+    known = {
+        "step": "", "exact": " by the exact motion", "collocation": f" by {scheme} stages",
+        "density": f" at first, of a density by the turn from {scheme} rad/s on",
+    }
+    return known.get(kind, f" by the {kind} {str(scheme).removeprefix(f'{kind} ')}")
 
 
 def _method(kind: str, name: str) -> dict[str, Any]:

@@ -200,7 +200,7 @@ def lagrangian(
     True
     """
     if (l_d is None) == (l is None) or (l is None) != (discretise is None):
-        raise DeclarationError("a Lagrangian has `l_d`, or `l` with `discretise`")
+        raise DeclarationError("a Lagrangian has `l_d`, or `l` with `discretise`, as in `discretise=\"trapezoid(Cayley)\"`")
     numbers = {name: _value(name, value) for name, value in parameters.items()}
     head = "l_d"
     if l is not None:

@@ -46,9 +46,9 @@ pub enum Spread {
     },
     /// The normal distribution.
     Normal {
-        /// Its mean.
+        /// Mean of the distribution.
         mean: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the distribution.
         deviation: f64,
     },
 }

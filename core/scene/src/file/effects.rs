@@ -44,7 +44,7 @@ macro_rules! effects {
                         (Turning::Fixed(_), Some(GM), Some(r)) => (GM.value, r.value),
                         // Kepler's third law.
                         (Turning::Turns(OnOrbit { orbit }), ..) => (orbit.rate() * orbit.rate(), 1.0),
-                        // A file without them is refused.
+                        // A gravity gradient without these values is refused when the file is read.
                         _ => (f64::NAN, f64::NAN),
                     };
                     GravityGradient { GM, r, J: *J, direction: p.direction.at(t) }
@@ -76,7 +76,7 @@ pub(crate) use effects;
 
 /// The facts about an effect that don't depend on a file.
 pub(crate) struct Listed {
-    /// Its table in a file.
+    /// The effect's table in a file.
     pub(crate) key: &'static str,
     /// The effect's derivation, and the text of its declaration.
     pub(crate) derived: (&'static str, &'static str),
@@ -88,7 +88,7 @@ impl Listed {
         self.key.replace('_', between)
     }
 
-    /// Whether it is a force rather than a Lagrangian.
+    /// Whether the effect is a force rather than a Lagrangian.
     pub(crate) fn does_work(&self) -> bool {
         self.derived.1.starts_with("#[force")
     }

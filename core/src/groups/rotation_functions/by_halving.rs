@@ -39,7 +39,7 @@ fn large<T: Number>(q: T) -> (T, T) {
     let quarter = T::number(0.25);
     let mut reduced = q;
     let mut doublings = 0;
-    // Lanes that are already small wait. A NaN never becomes small.
+    // Lanes whose angles are small already stay as they are. A NaN never becomes small.
     while doublings < MOST_DOUBLINGS && reduced.simd_gt(T::number(SMALL)).any() {
         reduced = (reduced * quarter).select(reduced.simd_gt(T::number(SMALL)), reduced);
         doublings += 1;

@@ -9,7 +9,8 @@ use nalgebra::{Matrix3, SimdBool as _};
 pub(in super::super) fn quaternion<T: Real>(r: &Matrix3<T>) -> [T; 4] {
     let one = T::one();
     let (wx, wy, wz) = (r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
-    // The square of a part, times four, and the products of that part with all. The four squares have the sum four.
+    // The square of a component, times four, and the products of that component with all. The four squares have the sum
+    // four.
     let ww = one + r.m11 + r.m22 + r.m33;
     // Within 120° of the identity the real part is large enough. Beyond, the largest of the others is.
     let from_another = || {
@@ -79,7 +80,7 @@ mod tests {
     fn each_lane_has_its_own_quaternion() {
         use crate::numbers::Lanes as _;
         use simba::simd::{SimdValue as _, WideF64x4};
-        // The fifth has a real part that is large enough, though another is larger.
+        // The fifth quaternion has a real part that is large enough, though another component is larger.
         let quaternions = [[2.0, 0.3, -0.2, 0.5], [0.3, 2.0, 0.5, -0.2], [-0.2, 0.5, 2.0, 0.3], [0.5, -0.2, 0.3, 2.0]]
             .into_iter()
             .chain([[0.6, 0.0, 0.8, 0.0]])

@@ -1,4 +1,4 @@
-//! What terms at the places of a system add to a scene: sums over their places.
+//! The effect of terms placed in a system of bodies: sums over their places.
 
 use alloc::string::String;
 use core::fmt::Debug;
@@ -18,14 +18,14 @@ where
     E: Effect,
     E::Retraction: Retraction<P::Group>,
 {
-    /// The sum of a number of each place.
+    /// The sum of one number for each place.
     fn total(&self, w: &P::Advected, of: impl Fn(&E, &E::Advected, At) -> E::Scalar) -> E::Scalar {
         let mut total = real(0.0);
         P::visit(|at| total += of(self.term(at), &P::seen(w, &self.term(at).advected(), at), at));
         total
     }
 
-    /// The sum of the components at each place.
+    /// The sum of component vectors, one for each place.
     fn gathered(&self, w: &P::Advected, of: impl Fn(&E, &E::Advected, At) -> Vector<E>) -> Vector<Self> {
         P::sum(|at| of(self.term(at), &P::seen(w, &self.term(at).advected(), at), at))
     }
@@ -34,7 +34,8 @@ where
         &self.terms[term_at::<M>(at.place)]
     }
 
-    /// Residual and Jacobian at each place, all with the factor of the most [denominators](Effect::denominators).
+    /// Residual and Jacobian at each place, multiplied by the largest power of the Cayley
+    /// [denominator](Effect::denominators).
     #[hot]
     fn systems(
         constants: &TermConstants<E, M>,
@@ -93,7 +94,7 @@ where
         constants.iter().map(|(constants, _)| E::denominators(constants)).max().unwrap_or(0)
     }
 
-    // Several values have the parts of their type.
+    // One term for all places may have fewer parts than its type; several have those of the type.
     fn parts(constants: &Self::Constants) -> Parts {
         if M == 1 { E::parts(&constants[0].0) } else { Self::PARTS }
     }
@@ -234,7 +235,7 @@ where
     }
 }
 
-/// How many there are, as operations are counted.
+/// The number of places, in the type of operation counts.
 #[allow(clippy::cast_possible_truncation)] // far fewer
 const fn places_of<P: Places<E>, E: Effect>() -> u32 {
     P::PLACES as u32

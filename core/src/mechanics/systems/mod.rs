@@ -1,4 +1,4 @@
-//! Systems of many bodies: terms that are declared on one body or on two, put at places.
+//! Systems of many bodies: terms that are declared on one body or on two, placed at bodies or between them.
 //!
 //! A term is derived once, whatever the number of bodies, and what a step runs is a loop over its places. The group of a
 //! system of `N` bodies is `[G; N]`, and what is put at its places adds with `+` as other effects do:
@@ -76,14 +76,14 @@ use crate::mechanics::term::Term;
 pub struct Placement<P, E, const M: usize> {
     #[shared]
     places: P,
-    /// One for all or one for each, as [`of`](Each::of) has checked.
+    /// One term for all places, or one for each; [`of`](Each::of) has checked their number.
     terms: [E; M],
 }
 
 macro_rules! of {
     ([$($parameters:tt)*] $places:ident<$($arguments:ident),+>) => {
         impl<$($parameters)*> $places<$($arguments),+> {
-            /// Terms at these places: one that is the same at all, or one for each.
+            /// Terms at these places: one for all of them, or one for each.
             pub const fn of<E: Effect, const M: usize>(terms: [E; M]) -> Placement<Self, E, M>
             where
                 Self: Places<E>,
@@ -95,7 +95,7 @@ macro_rules! of {
     };
 }
 
-/// Refuses, when the program is built, terms that can't be at these places.
+/// Refuses, when the program is built, terms that don't fit these places.
 const fn check<P: Places<E>, E: Effect, const M: usize>() {
     if let Some(cause) = P::WRONG {
         panic!("{}", cause);
@@ -149,7 +149,7 @@ const fn term_at<const M: usize>(place: usize) -> usize {
     if M == 1 { 0 } else { place }
 }
 
-/// Constants of a term, and its spatial values.
+/// Constants of each term, and its advected parameters in space.
 type TermConstants<E, const M: usize> = [(<E as Effect>::Constants, <E as Term>::Advected); M];
 
 impl<P, E, const M: usize> Term for Placement<P, E, M>
@@ -162,13 +162,13 @@ where
     type Group = P::Group;
     type Advected = P::Advected;
 
-    /// A wrong parameter of a term of several is that of its body, or of the first of its two.
+    /// The error for a parameter of one of several terms names the term's body, or the first of its two.
     fn validate(&self) -> Result<(), SetupError> {
         let mut checked = Ok(());
         P::visit(|at| {
             if checked.is_ok() && (at.place < M) {
                 checked = self.terms[at.place].validate().map_err(|error| match error {
-                    // What is the same at all places is of no body.
+                    // An error in a term that all places share names no body.
                     SetupError::Parameter { field, cause } if M > 1 || (P::AT_ONE_BODY && P::PLACES == 1) => {
                         SetupError::BodyParameter { body: at.bodies[0], field, cause }
                     }

@@ -110,7 +110,8 @@ impl<R: Register> Work<R> {
         (self.next, self.back) = (next, next.transposed());
     }
 
-    /// Whether the link turns by less than 90° and its determinant has the same sign as at rest.
+    /// Whether the link turns by less than 90° and its determinant has the same sign as at rest, as on the branch of
+    /// the identity.
     pub(super) fn is_wanted(&self) -> bool {
         self.determinant > 0.0 && square(self.half) < 1.0
     }

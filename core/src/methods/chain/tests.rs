@@ -23,10 +23,10 @@ fn link(central: Matrix3<f64>, m: f64, c: [f64; 3], rho: [f64; 3]) -> Link {
 }
 
 /// A chain, its initial attitudes and its initial velocities.
-type Started = (Chain<3>, [SO3; 3], [Vector3<f64>; 3]);
+type ChainStart = (Chain<3>, [SO3; 3], [Vector3<f64>; 3]);
 
 /// Links without any symmetry, under an oblique vertical.
-fn oblique() -> Started {
+fn oblique() -> ChainStart {
     let central = Matrix3::new(0.3, 0.02, -0.03, 0.02, 0.2, 0.01, -0.03, 0.01, 0.4);
     let links = [
         link(central, 1.2, [0.1, 0.05, -0.5], [0.1, 0.2, -1.0]),
@@ -39,7 +39,7 @@ fn oblique() -> Started {
 }
 
 /// `chain3` of the reference data in `tests/data/several_bodies.json`.
-fn reference() -> Started {
+fn reference() -> ChainStart {
     let central = |moments: [f64; 3]| {
         let moments = Vector3::from(moments);
         Matrix3::from_diagonal_element(0.5 * moments.sum()) - Matrix3::from_diagonal(&moments)

@@ -105,7 +105,7 @@ impl<S: Effect> Stepper<S> {
                 "collocation needs a pair of stages, and doubles have no use for more than 8"
             );
         }
-        // This plan is constructed only to check the scene and the step.
+        // The own step's plan is constructed only to check the scene and the step.
         OwnStep::new(&scene, h)?;
         let plan = Gauss::new(&scene, h)?;
         Ok(Stepper { scene, plan })

@@ -101,7 +101,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
     ) -> (Self, [f64; 2]) {
         let mut next = [[[0.0; PAIRS]; 2]; 8];
         let mut changes = [[[0.0; PAIRS]; 2]; 2];
-        // The one loop over stages, which the compiler vectorises.
+        // The only loop over stages, which the compiler vectorises.
         for stage in 0..2 * PAIRS {
             let places = each(|component| {
                 y[component] + (carry[component] + entry(&coefficients.places, stage, &self.0[component]))

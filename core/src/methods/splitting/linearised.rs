@@ -50,12 +50,12 @@ pub trait DifferentiableFlow<T: Real>: KineticFlow<T> {
     fn slopes(flow: &Self, time: T) -> Self::Slopes;
 
     /// Passes the derivatives of a drift to `pass`.
-    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, Self::Slopes, A>, pass: &mut impl Pass<SO3<T>>);
+    fn visit<A>(flow: &Self, drift: &DriftEvent<'_, T, Self::Slopes, A>, pass: &mut impl Pass<SO3<T>>);
 }
 
 /// A drift of this duration, s. Its parameters are numbered from `first` on, among those of the splitting.
 #[doc(hidden)]
-pub struct Drifted<'a, T: Real, D, A> {
+pub struct DriftEvent<'a, T: Real, D, A> {
     pub(super) time: T,
     pub(super) slopes: &'a D,
     pub(super) event: &'a Change<SO3<T>, A>,
@@ -77,7 +77,7 @@ where
     }
 
     #[hot]
-    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, (), A>, pass: &mut impl Pass<SO3<T>>) {
+    fn visit<A>(flow: &Self, drift: &DriftEvent<'_, T, (), A>, pass: &mut impl Pass<SO3<T>>) {
         pass.stage(&Stage::step(flow, drift.time, drift.event, ()).behind(drift.first));
     }
 }
@@ -99,8 +99,8 @@ impl<T: Real> DifferentiableFlow<T> for SymmetricBody<T> {
     }
 
     #[hot]
-    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, (), A>, pass: &mut impl Pass<SO3<T>>) {
-        let (&Drifted { time, event, first, .. }, (transverse, axial)) = (drift, Self::moments(flow));
+    fn visit<A>(flow: &Self, drift: &DriftEvent<'_, T, (), A>, pass: &mut impl Pass<SO3<T>>) {
+        let (&DriftEvent { time, event, first, .. }, (transverse, axial)) = (drift, Self::moments(flow));
         let (momentum, increment) = (event.before.momentum, event.increment);
         let t = time / transverse;
         let s = t * ((axial - transverse) / axial);
@@ -212,7 +212,7 @@ where
         let ((scene, table), (index, event)) = (stages, event);
         let Some((length, slopes)) = table.0.get(index) else { return };
         if let Some(slopes) = slopes {
-            let drift = Drifted { time: length.time, slopes, event, first: S::PARAMETERS };
+            let drift = DriftEvent { time: length.time, slopes, event, first: S::PARAMETERS };
             return K::visit(&self.kinetic, &drift, pass);
         }
         let (torque, inverse_inertia) = (&self.torque, &self.inverse_inertia);

@@ -84,7 +84,7 @@ pub struct Splitting<S: Effect, K: KineticFlow<Scalar<S>>> {
     first: Stages<K::Drift, Scalar<S>>,
     /// A step from the end of its first share to the end of the next step's first share, which is merged with the last.
     step: Stages<K::Drift, Scalar<S>>,
-    /// The stages from there to the end of a run.
+    /// The stages from the end of the first share to the end of a run.
     last: Stages<K::Drift, Scalar<S>>,
     /// The sum of the [spins](KineticFlow::spin) of a step's drifts, if they commute with all its stages.
     spin: Option<Spin<Scalar<S>>>,
@@ -107,7 +107,7 @@ enum Share<D, T> {
 /// stays in registers.
 #[derive(Clone, Debug, Lanes)]
 struct Stages<D, T> {
-    /// A kick before the first drift.
+    /// The kick before the first drift, if the splitting begins with one.
     lead: Option<Kick<T>>,
     stages: Vec<Stage<D, T>>,
 }
@@ -170,7 +170,7 @@ impl<S: Effect> Stepper<S> {
         S: DiscreteLagrangian<Group = SO3<<S as Term>::Scalar>> + Regular,
         K: KineticFlow<Scalar<S>>,
     {
-        // This plan is constructed only to check the scene and the step.
+        // The own step's plan is constructed only to check the scene and the step.
         OwnStep::new(&scene, h)?;
         let plan = Splitting::new(&scene, h, flow, scheme)?;
         Ok(Stepper { scene, plan })
@@ -276,7 +276,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
         motion: &mut M,
         iterations: &mut u32,
     ) -> Result<(), StepError> {
-        // No closure, because it wouldn't be compiled for the detected vector instructions.
+        // The loop isn't a closure, because that wouldn't be compiled for the detected vector instructions.
         if let Some(kick) = &shares.lead {
             self.kick(kick, motion);
         }

@@ -1,6 +1,6 @@
 //! The published coefficients of kinetic-potential splittings.
 
-// The digits are those of the papers, although a double has fewer.
+// Coefficients have the digits of the papers, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use crate::methods::composition::CompositionScheme;

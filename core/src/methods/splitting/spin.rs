@@ -15,7 +15,8 @@ use crate::numbers::{Entries as _, Real, real, two_square, two_sum};
 /// Attitudes in general position.
 const SAMPLES: [[f64; 3]; 4] = [[0.7, -0.4, 1.1], [-0.3, 0.9, 0.5], [1.3, 0.8, -0.2], [-0.6, -1.2, 0.9]];
 
-/// Whether a property holds for advected parameters at all sample attitudes, and for arbitrary values of them.
+/// Whether a property of the scene holds for its advected parameters at sample attitudes, and for arbitrary values of
+/// them.
 pub(super) fn all_samples<T, L>(lagrangian: &L, is_so: impl Fn(&L::Advected) -> bool) -> bool
 where
     T: Real,

@@ -265,7 +265,7 @@ fn taken<S: Effect, M: SumsOf<S>>(scene: &S, motion: &mut M, kept: &mut Memory<S
     StepReport::of(made.iterations)
 }
 
-/// The rare work after the first step, and after a fixed number of further ones.
+/// The rare work of a run: the first step, and the check of the attitude after a fixed number of further ones.
 #[cold]
 #[inline(never)]
 fn look<S: Effect, M: Summation<Group<S>, S::Advected>>(scene: &S, motion: &mut M, kept: &mut Memory<S>) {

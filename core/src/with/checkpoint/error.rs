@@ -22,7 +22,7 @@ pub enum CheckpointError {
         "the checkpoint is of another scene (another Lagrangian or scalar); resume it with the stepper that it was made by"
     )]
     AnotherScene,
-    /// A parameter had another value.
+    /// A parameter of the stepper differs from the stored one.
     #[error(
         "parameter `{field}` is {stored:e} in the checkpoint and {own:e} here; build the stepper with the checkpoint's parameters, or start a new motion from its attitude and momentum"
     )]
@@ -31,10 +31,10 @@ pub enum CheckpointError {
         field: &'static str,
         /// A scalar of the field in the checkpoint.
         stored: f64,
-        /// That scalar in the stepper.
+        /// Value of that scalar in the stepper.
         own: f64,
     },
-    /// The step had another size.
+    /// The stepper's step differs from the stored one.
     #[error(
         "the step is {stored:e} s in the checkpoint and {own:e} s here; build the stepper with the checkpoint's step"
     )]

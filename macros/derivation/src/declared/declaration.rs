@@ -163,7 +163,7 @@ pub struct Discretisation {
 /// The points of a step at which `l` is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quadrature {
-    /// At both ends, `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
+    /// The trapezoidal rule at both ends of a step, `(h/2) (l(ξ, w) + l(ξ, F⁻¹·w))`.
     Trapezoid,
     /// In the middle of the curve, `h l(ξ, τ(hξ/2)⁻¹·w)`.
     Midpoint,
@@ -187,9 +187,9 @@ pub struct AdvectedParameter {
     pub name: Ident,
     /// The index of the field; `None` where there is no such field of a known type.
     pub field: Option<usize>,
-    /// Whether it is a value of the step, which the group doesn't move: `given(…)`.
+    /// Whether the parameter is a prescribed value of the step, which the group doesn't move: `given(…)`.
     pub is_given: bool,
-    /// The bodies that move it.
+    /// The bodies that move the parameter.
     pub seen: View,
 }
 
@@ -270,7 +270,7 @@ impl Declaration {
 pub struct Field {
     pub name: Ident,
     pub kind: FieldKind,
-    /// The span of its type.
+    /// The span of the field's type.
     pub at: Span,
 }
 
@@ -306,7 +306,7 @@ pub enum FieldKind {
 }
 
 impl FieldKind {
-    /// The action of the group on it: a plain vector is a covector.
+    /// The action of the group on a field of this kind: a plain vector is a covector.
     pub fn variance(self) -> Variance {
         match self {
             Self::Advected(variance, _) => variance,
@@ -316,17 +316,17 @@ impl FieldKind {
         }
     }
 
-    /// Whether a group with matrices of this size can move it.
+    /// Whether a group with matrices of this size can move a field of this kind.
     pub fn is_carried_by(self, size: usize) -> bool {
         matches!(self, Self::Vector(rows) | Self::Point(rows) | Self::Advected(_, rows) if rows == size)
     }
 
-    /// Whether the type of its value names the action of the group.
+    /// Whether the type of a field's value names the action of the group.
     pub fn is_wrapped(self) -> bool {
         matches!(self, Self::Advected(..))
     }
 
-    /// Whether it can be prescribed for each step.
+    /// Whether a field of this kind can be prescribed for each step.
     pub fn can_be_given(self) -> bool {
         matches!(self, Self::Scalar | Self::Vector(_) | Self::Matrix(_))
     }

@@ -42,7 +42,7 @@ impl Shape {
 /// An expression with its shape and its mathematical meaning.
 #[derive(Clone, Debug)]
 pub struct Tree {
-    /// The span of its first token; `end` is that of its last one.
+    /// The span of the expression's first token; `end` is that of its last one.
     pub span: Span,
     pub end: Span,
     pub shape: Shape,
@@ -50,7 +50,7 @@ pub struct Tree {
     /// The depth of nested operations, including those of `let`s.
     pub depth: usize,
     pub frames: Frames,
-    /// Whether it consists of increments, relative configurations and numbers alone.
+    /// Whether the expression consists of increments, relative configurations and numbers alone.
     pub is_of_turns: bool,
 }
 
@@ -108,9 +108,9 @@ pub enum Name {
     Step,
     /// The components of the velocity in a continuous Lagrangian, of one factor of the group.
     Velocity(usize),
-    /// `eta`, the displacement at the beginning of the step, of one factor of the group.
+    /// The displacement `eta` at the beginning of the step, of one factor of the group.
     DisplacementBefore(usize),
-    /// `eta_next`, the one at its end.
+    /// The displacement `eta_next` at the end of the step, of one factor of the group.
     DisplacementAfter(usize),
     /// An advected parameter, by its index in the list.
     Advected(usize),

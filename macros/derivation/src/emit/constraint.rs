@@ -38,7 +38,7 @@ pub(crate) fn constraint(item: &TokenStream, declaration: &Declaration, held: &C
             /// The functions as declared.
             fn gap(&self, #places) -> #private::nalgebra::SVector<#core::primitive::f64, #functions> { #gap }
 
-            /// Their derivatives, as derived.
+            /// The derivatives of the constraint's functions, as derived.
             fn slope(&self, #places) -> [#private::Slope<#functions>; 2] { #slope }
 
             fn describe(&self, visit: &mut dyn #core::ops::FnMut(&'static #core::primitive::str, #core::primitive::f64)) {

@@ -33,7 +33,7 @@ pub(super) fn lets(derived: &Derivation) -> String {
     if derived.closed.is_empty() {
         return String::new();
     }
-    // A number with many digits is its own name.
+    // A constant with many digits has its digits as its name.
     let named = || derived.closed.iter().filter(|one| name(one.symbol).parse::<f64>().is_err());
     let values = named().map(|one| format!("\n    {} = {}", name(one.symbol), text(&one.value, symbols)));
     let pairings = named().rev().map(|one| {
@@ -187,7 +187,7 @@ pub(super) fn derivation(
     continuous: Option<String>,
     findings: &Findings,
 ) -> String {
-    // The equations of one method have one head.
+    // Several equations of one method stand below one heading.
     let line = |(at, equation): (usize, &Equation)| {
         let is_next = at > 0 && equations[at - 1].method == equation.method;
         let head = if is_next { String::new() } else { format!("{}\n", equation.method) };

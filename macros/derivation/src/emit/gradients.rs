@@ -10,7 +10,7 @@ use crate::judged::{count, variables};
 use crate::mathematics::symbolic::SymbolId;
 use crate::program::{Derivatives, Form, Node, NodeId, WeightedGradient};
 
-/// The implementation; `None` if it isn't requested.
+/// The implementation of the derivatives; `None` if it isn't requested.
 pub(super) fn implementation(emitter: &Emitter, derivatives: Option<&Derivatives>) -> Option<TokenStream> {
     let derivatives = derivatives?;
     let (span, private) = (Span::mixed_site(), &emitter.header.private);

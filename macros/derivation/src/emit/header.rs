@@ -203,7 +203,7 @@ impl Header {
     pub(crate) fn addition(&self) -> TokenStream {
         let (span, private, group) = (Span::mixed_site(), &self.private, self.group());
         let core = quote_spanned!(span=> #private::core);
-        // No type of the user's has this name.
+        // A name that no type of the user's has.
         let other = Ident::new("LiestepOtherTerm", span);
         let bounds = [
             syn::parse_quote_spanned!(span=> #other: #private::Term),

@@ -103,7 +103,7 @@ impl Code<'_> {
 
     pub(super) fn field_entry(&self, index: usize, input: Input) -> TokenStream {
         let Some(field) = self.declaration.fields.get(index) else { return TokenStream::new() };
-        // If the name is that of another type, the compiler reports it at the field.
+        // The compiler reports a name of another type at the field.
         let (name, span) = (&field.name, field.at.resolved_at(Span::mixed_site()));
         let place = |value: TokenStream| entry_at(span, &value, input);
         match field.kind {

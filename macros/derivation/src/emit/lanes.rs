@@ -40,7 +40,7 @@ struct Part {
 enum Kind {
     Scalar,
     Lanes,
-    /// All lanes have one value.
+    /// A field with one value for all lanes.
     Shared,
 }
 
@@ -57,7 +57,7 @@ pub(super) fn lanes(header: &Header, fields: Option<&[Field]>) -> TokenStream {
     let is_single = [header.generics.to_token_stream(), header.generics.where_clause.to_token_stream()]
         .into_iter()
         .any(|bounds| names(bounds, &["RealField", "ComplexField"]));
-    // No type of the user's has this name.
+    // A name that no type of the user's has.
     let several = if is_single { scalar.clone() } else { Ident::new("LiestepLanes", span) };
     let target = Struct {
         private: header.private.to_token_stream(),

@@ -29,7 +29,7 @@ pub(crate) fn own_group(group: Option<&OwnGroup>, name: Option<&Ident>, errors: 
     let (marker, asked) = (format_ident!("{name}Generators"), format_ident!("__liestep_{name}"));
     let [size, dimension] = [*size, generators.elems.len()].map(Literal::usize_unsuffixed);
     let about = format!("What declares [`{name}`].");
-    // Such a macro can leave its crate by a path from the root only.
+    // A `macro_rules!` macro can leave its crate by a path from the root only.
     let reach = match visibility {
         Visibility::Public(_) => quote!(pub(crate)),
         other => quote!(#other),

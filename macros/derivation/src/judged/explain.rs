@@ -72,7 +72,7 @@ fn term(mistake: TermMistake, declaration: &Declaration) -> String {
     }
 }
 
-/// Of a term that no equation of motion has.
+/// The message for a term that no equation of motion contains.
 fn idle(mistake: TermMistake, declaration: &Declaration) -> String {
     let motion = match declaration.role {
         Role::Force => "displacement",
@@ -203,7 +203,7 @@ pub(super) fn continuous_kinetic_part(
 /// The generators without kinetic energy; those of several bodies are numbered from one in each.
 fn without_energy(idle: &[usize], declaration: &Declaration) -> String {
     if idle.is_empty() {
-        return String::new();
+        return "; give every direction an inertia".to_owned();
     }
     let name = |k: usize| {
         let (factor, own) = declaration.group.factor_of(k);
@@ -213,7 +213,7 @@ fn without_energy(idle: &[usize], declaration: &Declaration) -> String {
         }
     };
     let names: Vec<String> = idle.iter().map(|&k| name(k)).collect();
-    format!(": there is no kinetic energy along {}", names.join(", "))
+    format!("; give every direction an inertia: there is no kinetic energy along {}", names.join(", "))
 }
 
 /// The reason why a declared `l` can't be discretised as requested.

@@ -96,7 +96,7 @@ fn dual(
         given.insert(direction, unit);
         Scalariser::new(graph, &derived.symbols, given).scalar(pairing)
     });
-    // The direction is a local variable: no later term may use its last value.
+    // The direction is used in this function alone: no later term may use its last value.
     given.remove(&direction);
     values
 }

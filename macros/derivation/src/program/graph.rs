@@ -17,7 +17,7 @@ pub struct Graph {
     /// The products of matrices so far, by the inner dimension and the entries of both. The components of a covector
     /// share many of them, and the entries of a Jacobian more.
     pub(super) products: BTreeMap<(usize, Matrix, Matrix), Matrix>,
-    /// The costs of such products.
+    /// The costs of products of matrices.
     pub(super) costs: BTreeMap<(usize, Matrix, Matrix), (bool, usize, usize)>,
     /// The entries of symbols and, with `true`, of their transposes, if they have been used.
     pub(super) symbols: BTreeMap<(SymbolId, bool), Matrix>,

@@ -30,7 +30,7 @@ pub struct Place {
     pub symbol: SymbolId,
     pub row: usize,
     pub column: usize,
-    /// Whether it is an off-diagonal entry of a symmetric matrix, which occurs twice.
+    /// Whether the number is an off-diagonal entry of a symmetric matrix, which occurs twice.
     pub is_half: bool,
 }
 
@@ -92,7 +92,7 @@ struct Linearisation<'a> {
     increments: KnownEntries,
 }
 
-/// The changes of the inputs; others don't change.
+/// The changes of the inputs; other inputs don't change.
 pub(super) type Changes = BTreeMap<NodeId, NodeId>;
 
 /// Outputs with their weights.
@@ -286,7 +286,7 @@ impl<'a> Linearisation<'a> {
     }
 }
 
-/// The change along these changes of the inputs.
+/// The change of a weighted sum of outputs along changes of the inputs, by its gradient.
 fn along(graph: &mut Graph, gradient: &Gradient, changes: &Changes) -> NodeId {
     let share = |(entry, &change): (&NodeId, &NodeId)| Some(graph.multiply(*gradient.get(entry)?, change));
     let shares: Vec<NodeId> = changes.iter().filter_map(share).collect();

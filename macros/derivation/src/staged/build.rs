@@ -75,7 +75,7 @@ fn derivatives(found: &Derivatives, sources: &Sources) -> [Program; 4] {
     let zero = graph.zero();
     let shapes = (0..sources.declaration.advected.len()).map(|index| carried(sources.declaration, index).shape);
     let count: usize = shapes.map(|(rows, columns)| rows * columns).sum();
-    // Numbers without effect aren't listed.
+    // Derivatives by numbers without effect aren't listed.
     let all = |listed: &[(usize, Vec<NodeId>)], outputs: usize| -> Vec<NodeId> {
         let of = |number| listed.iter().find(|(known, _)| *known == number).map(|(_, nodes)| nodes.clone());
         (0..count).flat_map(|number| of(number).unwrap_or_else(|| vec![zero; outputs])).collect()

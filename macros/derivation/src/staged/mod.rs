@@ -145,9 +145,9 @@ impl Operation {
 /// A field of the struct.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
-    /// Its name.
+    /// Name of the field.
     pub name: String,
-    /// The type of its value.
+    /// The type of the field's value.
     pub kind: ParameterKind,
 }
 
@@ -162,7 +162,7 @@ pub enum ParameterKind {
     Matrix(usize),
     /// A symmetric matrix of three rows, `NonstandardInertia` or `Inertia`.
     Inertia,
-    /// The diagonal of one.
+    /// A diagonal inertia, by its diagonal.
     DiagonalInertia,
 }
 
@@ -222,14 +222,14 @@ pub enum Action {
     },
     /// The configuration of a factor in space.
     Configuration(usize),
-    /// No action.
+    /// A parameter prescribed for each step, on which the group doesn't act.
     Given,
 }
 
 /// A factor of the group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Factor {
-    /// Its name.
+    /// Name of the advected parameter.
     pub name: String,
     /// The generators, each by rows.
     pub generators: Vec<Vec<f64>>,
@@ -306,7 +306,7 @@ pub struct StagedDeclaration {
     pub parameters: Vec<Parameter>,
     /// The advected and given parameters.
     pub carried: Vec<Carried>,
-    /// The index of the energy `E_0` among these, if there is a pace.
+    /// The index of the energy `E_0` among the advected and given parameters, if there is a pace.
     pub energy: Option<usize>,
     /// The derivation as text.
     pub derivation: String,

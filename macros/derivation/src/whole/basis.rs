@@ -1,4 +1,4 @@
-//! The basis of a matrix Lie algebra, in numbers: what its generators say of the group.
+//! The basis of a matrix Lie algebra, in numbers, and the form of the group that follows from it.
 
 use super::StepRefusal;
 use super::linear::{ROUNDING, inverse_of};
@@ -16,7 +16,7 @@ pub enum Form {
     Orthogonal,
     /// Matrices of two rows with determinant one.
     Unimodular,
-    /// None of these.
+    /// A group of no special form.
     General,
 }
 
@@ -80,7 +80,7 @@ impl Basis {
         self.generators.len()
     }
 
-    /// The numbers that programs have of the basis.
+    /// The constants of the basis that programs contain.
     pub(super) fn numbers(&self) -> impl Iterator<Item = f64> {
         let lengths = self.lengths.iter().map(|length| 1.0 / length);
         let cubes = self.generators.iter().filter_map(|e| self.cube(e));
@@ -111,7 +111,7 @@ impl Basis {
         if n == 2 && all.iter().all(is_traceless) { Form::Unimodular } else { Form::General }
     }
 
-    /// Coordinates that stay in the group.
+    /// Coordinates about the identity that stay in the group.
     pub(super) fn chart(&self) -> Result<Chart, StepRefusal> {
         if self.has_cayley_map() {
             return Ok(Chart::Cayley);

@@ -74,7 +74,7 @@ pub(super) fn mistake(writer: &Writer, of: &Subject) -> Option<&'static str> {
 fn is_a_step(writer: &Writer, of: &Subject, mut numbers: Numbers, momenta: &[Vec<Residue>; 2]) -> Option<&'static str> {
     let (n, entries) = (writer.dimension(), writer.entries);
     let mut ends = Vec::new();
-    // Kicks are the same for both momenta.
+    // Kicks don't depend on the momentum.
     for momentum in momenta {
         set(&mut numbers, Array::Target, momentum.clone());
         set(&mut numbers, Array::Momentum, momentum.clone());
@@ -125,7 +125,7 @@ fn read(numbers: &Numbers, source: Source) -> Residue {
     found.and_then(|(_, all)| all.get(source.at)).copied().unwrap_or(Residue::UNDEFINED)
 }
 
-/// The outputs; none if one isn't defined.
+/// The outputs of a program; none if one isn't defined.
 fn run(program: &Program, numbers: &Numbers) -> Option<Vec<Residue>> {
     let outputs = evaluated(program, |source| read(numbers, source));
     outputs.iter().all(|output| output.is_defined()).then_some(outputs)

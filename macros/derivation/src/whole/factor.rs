@@ -12,7 +12,7 @@ use crate::staged::{Array, Source};
 /// A factor of the group, and its place among all.
 #[derive(Clone, Debug)]
 pub struct MatrixFactor {
-    /// Its name.
+    /// Name of the factor.
     pub name: String,
     /// The generators.
     pub basis: Basis,
@@ -66,7 +66,7 @@ impl MatrixFactor {
         self.regular_form.as_ref().map(|form| restored(words, g, form))
     }
 
-    /// Its part of the components of all factors.
+    /// The factor's part of the components of all factors.
     pub(super) fn own<'a>(&self, all: &'a [Value]) -> &'a [Value] {
         &all[self.component..self.component + self.dimension()]
     }
@@ -241,7 +241,7 @@ impl MatrixFactor {
         m
     }
 
-    /// Whether an entry is that of the identity in all elements, as far as the form says.
+    /// Whether an entry is that of the identity in all elements, by the form of the group.
     fn is_constant(&self, at: usize) -> bool {
         match self.form {
             Form::Rigid(k) => at / self.size() >= k,
@@ -320,12 +320,12 @@ impl MatrixFactor {
         Some(words.multiply(square, Value::of(factor)))
     }
 
-    /// Its matrix in an array with the entries of all factors; those that all elements share are known.
+    /// The factor's matrix in an array with the entries of all factors; entries that all elements share are known.
     pub(super) fn read(&self, array: Array) -> Matrix {
         self.constant_rows(self.read_all(array))
     }
 
-    /// Its matrix in such an array, with the entries that all elements share.
+    /// The factor's matrix in an array with the entries of all factors, constant ones included.
     pub(super) fn read_all(&self, array: Array) -> Matrix {
         let n = self.size();
         Matrix::of(n, n, |i, j| Value::Input(Source::new(array, self.entry + i * n + j)))

@@ -8,17 +8,17 @@ use crate::staged::{Array, Program};
 
 /// Programs of the parameters and of what is advected, some of a velocity or a momentum, too.
 pub(super) struct Limit {
-    /// `J`.
+    /// The inertia `J` at rest.
     pub(super) inertia: Program,
     /// The determinants of `J`.
     pub(super) safe: Program,
-    /// `J⁻¹(μ − s)`.
+    /// The velocity at rest, `J⁻¹(μ − s)`.
     pub(super) velocity: Program,
-    /// `∂l/∂ξ`.
+    /// The momentum `∂l/∂ξ`.
     pub(super) momentum: Program,
     /// `∂²l/∂ξ²`, where `l` isn't quadratic.
     pub(super) hessian: Option<Program>,
-    /// `ξ·∂l/∂ξ − l`.
+    /// The energy `ξ·∂l/∂ξ − l`.
     pub(super) energy: Program,
 }
 

@@ -24,7 +24,7 @@ impl Matrix {
         Self { rows: entries.len(), columns: 1, entries }
     }
 
-    /// The numbers of a matrix with this many rows.
+    /// The constant matrix of these numbers, with this many rows.
     pub(super) fn known(size: usize, numbers: &[f64]) -> Self {
         Self { rows: size, columns: size, entries: numbers.iter().map(|&number| Value::of(number)).collect() }
     }

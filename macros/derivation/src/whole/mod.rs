@@ -44,19 +44,19 @@ pub enum StepRefusal {
     Dependent,
     /// The Cayley map leaves the group, and so does that of multiples of this generator, whose cube isn't a multiple of it.
     Cube {
-        /// Its index, from zero.
+        /// Index of the generator, from zero.
         generator: usize,
     },
     /// There is no kinetic part, so that no velocity has a momentum.
     NoKinetic,
     /// The programs of the step don't make one, which is a fault of this library.
     Wrong {
-        /// The claim that is wrong.
+        /// The claim that isn't met.
         claim: &'static str,
     },
-    /// The step has more operations than this limit.
+    /// The step has more operations than the limit.
     TooLong {
-        /// The limit.
+        /// The limit on operations.
         most: usize,
     },
 }

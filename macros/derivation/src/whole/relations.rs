@@ -1,4 +1,4 @@
-//! The relations of a group that its generators tell, the distance of a matrix from them, and a nearer matrix.
+//! The relations that a group's generators imply, the distance of a matrix from the group, and a nearer matrix.
 //!
 //! An invariant of the algebra is one of the group: with `EᵀB + BE = 0` for all generators, `gᵀB g = B`. Relations are linear
 //! where products of generators are in the algebra, so that the group is an open part of `I + 𝔤`. Otherwise they are those of

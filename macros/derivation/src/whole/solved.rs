@@ -9,7 +9,7 @@ pub(super) struct Pattern {
     pub(super) dimension: usize,
     /// The components at which factors begin, but the first; empty if there is one factor.
     pub(super) factors: Vec<usize>,
-    /// The components at which blocks end that don't act on each other.
+    /// The components at which blocks of the system end that aren't coupled to each other.
     pub(super) apart: Vec<usize>,
 }
 
@@ -22,7 +22,7 @@ pub(super) struct Factorisation {
 }
 
 impl Pattern {
-    /// One block.
+    /// A system of one block.
     pub(super) fn whole(dimension: usize) -> Self {
         Self { dimension, factors: Vec::new(), apart: Vec::new() }
     }

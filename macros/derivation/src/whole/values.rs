@@ -1,4 +1,4 @@
-//! Values of straight-line code under construction, and the words that make new ones of them.
+//! Values of straight-line code under construction, and the builder that adds operations on them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,7 +27,7 @@ impl Value {
         Self::Number((number + 0.0).to_bits())
     }
 
-    /// One if that holds, else zero.
+    /// One if a condition holds, else zero.
     #[must_use]
     pub const fn one_if(holds: bool) -> Self {
         if holds { Self::ONE } else { Self::ZERO }
@@ -59,7 +59,7 @@ type Made = Operation<Value>;
 pub struct Words {
     operations: Vec<Made>,
     known: BTreeMap<Made, Value>,
-    /// The values of functions, where more is folded than keeps the bits.
+    /// The evaluation of functions of known numbers, in a program that may differ by rounding.
     applied: Option<fn(Function, f64) -> f64>,
 }
 
@@ -93,7 +93,7 @@ impl Words {
         }
     }
 
-    /// The value whose negative this is the result of.
+    /// The value whose negative this value is, if it is one.
     fn negated(&self, value: Value) -> Option<Value> {
         match self.made(value) {
             Some(Made::Negate(a)) => Some(a),
@@ -138,7 +138,7 @@ impl Words {
 
     /// `a b`.
     pub fn multiply(&mut self, a: Value, b: Value) -> Value {
-        // Numbers are the least values.
+        // Numbers come first in the order of values.
         let (a, b) = (a.min(b), a.max(b));
         match (a.number(), b.number()) {
             (Some(a), Some(b)) => Value::of(a * b),
@@ -240,7 +240,7 @@ impl Words {
                 Value::Result(_) => operations.extend(self.made(value)),
             }
         }
-        // A set has numbers before inputs and results; a program has its inputs first.
+        // Sorted values begin with numbers, while the registers of a program begin with its inputs.
         let (numbers, others) = (literals.len(), inputs.len());
         let place = |at: usize| match at {
             at if at < numbers => at + others,

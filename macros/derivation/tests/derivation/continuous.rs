@@ -1,4 +1,4 @@
-//! Continuous Lagrangians, and what is made of them.
+//! Continuous Lagrangians, and their discretisations.
 
 use std::rc::Rc;
 
@@ -51,7 +51,7 @@ const EVERYTHING: &str = "group = SE2, velocity = xi, advected(w = up, v = way, 
 const FIELDS: &str = "struct Everything { M: Matrix3<f64>, r: Vector3<f64>, up: Vector3<f64>,
     way: ContravariantVector<f64, 3>, field: MixedTensor<f64, 3> }";
 
-/// Each exact check sees a sign that is turned, and a factor.
+/// A wrong sign or a wrong factor in any continuous equation fails the exact check.
 #[test]
 fn a_turned_sign_is_seen() {
     for (arguments, item) in [(TOP, PARAMETERS), (EVERYTHING, FIELDS), (LINKS, OF_LINKS), (CART, OF_CART)] {
@@ -83,7 +83,7 @@ fn a_turned_sign_is_seen() {
     }
 }
 
-/// The limit of what is made of `l` is `l`; of another it isn't.
+/// The limit of a discretised `l` is `l`, and not another Lagrangian.
 #[test]
 fn the_limit_is_what_was_discretised() {
     let rules = ["trapezoid", "trapezoid(Cayley)", "trapezoid(exp)", "midpoint(exp)", "chord", "chord(exp)"];
@@ -110,7 +110,7 @@ fn the_limit_is_what_was_discretised() {
     }
 }
 
-/// As the normal form shows.
+/// The second derivative by the velocity is symmetric, as its normal form shows.
 #[test]
 fn the_second_derivative_is_symmetric() {
     let Equations { derived, .. } = equations(EVERYTHING, FIELDS);

@@ -1,12 +1,13 @@
-//! The same declaration gives the same tokens.
+//! Two expansions of one declaration have the same tokens.
 
 use crate::common::{HEAVY_TOP, expanded, top};
 
-/// The body of the library's effects.
+/// The declaration of the library's rigid body.
 const BODY: &str = "group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)";
 const BODY_PARAMETERS: &str = "struct RigidBody { J_d: NonstandardInertia }";
 
-/// What isn't in a scene costs nothing: a body's expansion is the same byte for byte, whatever else has been declared.
+/// Other declarations in a program cost nothing: a body's expansion is the same byte for byte, whatever else has been
+/// declared.
 #[test]
 fn other_declarations_change_nothing() {
     let alone = expanded(BODY, BODY_PARAMETERS).to_string();
@@ -20,7 +21,7 @@ fn other_declarations_change_nothing() {
     }
 }
 
-/// On threads, where the seeds of hashers would differ.
+/// Expansions on other threads, where hashers have other seeds, have the same tokens.
 #[test]
 fn on_other_threads_too() {
     let expansion = || expanded(HEAVY_TOP, &top("DiagonalNonstandardInertia")).to_string();

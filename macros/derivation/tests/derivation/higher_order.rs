@@ -1,4 +1,4 @@
-//! How many operations the Lagrangians of higher order come to.
+//! Counts of the operations of Lagrangians of higher order.
 
 use crate::common::{arguments_and_struct, derived};
 use liestep_derivation::mathematics::symbolic::Stage;
@@ -21,7 +21,7 @@ fn closed_lets_halve_the_operations_of_the_fourth_order_top() {
     assert!(iteration <= 1_550 && residual <= 350, "{iteration} {residual}");
 }
 
-/// Its gradient by multipliers is the residual.
+/// The gradient of the sixth order's Lagrangian by multipliers is the residual.
 #[test]
 fn a_gradient_costs_less_than_three_values_of_the_sixth_order_top() {
     let (arguments, item) = arguments_and_struct(SIXTH);

@@ -10,7 +10,7 @@ use proc_macro2::{LineColumn, TokenStream, TokenTree};
 use crate::common::{is_refused, tokens};
 use crate::texts::Declared;
 
-/// The tokens that the compiler makes of a declaration.
+/// The expansion of a declaration, as the compiler gets it.
 fn expansion(declaration: &str) -> TokenStream {
     if let Some(declared) = Declared::read(declaration) {
         return declared.expanded();
@@ -22,7 +22,7 @@ fn expansion(declaration: &str) -> TokenStream {
     liestep_derivation::matrix_group(body.expect("the braces of `matrix_group!`"))
 }
 
-/// The messages of an expansion: where the text that each underlines begins and ends.
+/// The messages of an expansion, each with the places where its underlined text begins and ends.
 fn messages(expansion: TokenStream) -> Vec<([LineColumn; 2], String)> {
     let tokens: Vec<TokenTree> = expansion.into_iter().collect();
     let errors = tokens.windows(3).filter_map(|three| match three {
@@ -49,7 +49,7 @@ pub(super) fn has_name(text: &str, name: &str) -> bool {
     text.split(|letter: char| !letter.is_alphanumeric() && letter != '_').any(|word| word == name)
 }
 
-/// The messages with the texts that they underline, or that there are none.
+/// The messages with the texts that they underline, or the word `accepted`.
 pub(super) fn outcome(declaration: &str, expansion: TokenStream) -> String {
     if !is_refused(&expansion) {
         return "accepted".to_owned();
@@ -59,7 +59,7 @@ pub(super) fn outcome(declaration: &str, expansion: TokenStream) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// A declaration with its messages, of which none says to write `h` for an `l`, which has no step.
+/// A declaration with its messages; asserts that none recommends `h` for an `l`, which has no step.
 fn annotated(declaration: &str) -> String {
     let expansion = expansion(declaration);
     assert!(is_refused(&expansion), "{declaration}\nis right");
@@ -68,13 +68,13 @@ fn annotated(declaration: &str) -> String {
         (vec![declaration.to_owned()], !has_name(declaration, "l") || has_name(declaration, "h"));
     for (ends, message) in messages(expansion) {
         let (LineColumn { line, column }, text) = (ends[0], between(declaration, ends));
-        // Not what a rule puts in the place of a velocity.
+        // The quotient `(F - I) / h`, which a rule puts in the place of a velocity, may be named.
         let is_code = |code: &str| has_name(code, "h") && !code.ends_with("- I) / h");
         assert!(
             has_step || !message.split('`').skip(1).step_by(2).any(is_code),
             "{declaration}\nhas no step: {message}"
         );
-        // What is missing has no place: the compiler underlines the attribute.
+        // A missing argument has no place: the compiler underlines the attribute.
         let place = if text.is_empty() { "^".to_owned() } else { format!("^ {line}:{} {text}", column + 1) };
         lines.extend([place, format!("  {}", message.replace('\n', "\n  "))]);
     }

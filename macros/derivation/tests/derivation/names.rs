@@ -1,4 +1,4 @@
-//! Names that are nearly right, and where names come from.
+//! Distances of misspelt names, and the expansions that names come from.
 
 use liestep_derivation::declared::errors::distance;
 use liestep_derivation::declared::spelling::site;

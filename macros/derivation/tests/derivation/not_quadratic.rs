@@ -1,4 +1,4 @@
-//! Lagrangians that aren't quadratic in the velocity, and the limits of what is made of them.
+//! Lagrangians that aren't quadratic in the velocity, and the limits of their discretisations.
 
 use std::rc::Rc;
 
@@ -11,7 +11,7 @@ use liestep_derivation::judged::verify::Motion;
 use liestep_derivation::mathematics::derive;
 use liestep_derivation::mathematics::symbolic::Rational;
 
-/// The limit of what is made of an `l` that isn't quadratic is `l`, by the series in `h`; that of another isn't.
+/// The limit of a discretised `l` that isn't quadratic is `l`, by the series in `h`, and not another Lagrangian.
 #[test]
 fn the_limit_of_what_isnt_quadratic() {
     let kinetic = "0.5 * Omega.dot(&(J_d * Omega)) * (1.0 + w.dot(&rho)) + m * Omega.norm_squared().powi(2)";
@@ -50,7 +50,7 @@ fn the_limit_of_a_root() {
         let mut errors = Errors::default();
         let asked = declaration.discretisation().expect("a rule");
         let discrete = judged::discretised(&declaration, &tree, asked, &mut errors).expect("a fit");
-        // Of the declared `l`, whatever the equations.
+        // The limit is compared with the declared `l`, whatever the equations.
         let any = equations(&l("1.0 - v.norm_squared() / (c * c)", '+'), fields);
         Motion::new(&declaration, Some(&read(other, fields).1), &any.names, &any.derived).has_limit(&discrete)
     };
@@ -58,7 +58,7 @@ fn the_limit_of_a_root() {
     assert_eq!(limit(&l(root, '+'), &l(root, '+')), Some(true));
     assert_eq!(limit(&l(root, '+'), &l(turned, '+')), Some(false));
     assert_eq!(limit(&l(root, '+'), &l(root, '-')), Some(false));
-    // Where no point tells, nothing is claimed; such an `l` is refused before that is asked.
+    // An `l` without a value at any point is neither confirmed nor denied; a declaration with it is refused before.
     for undefined in ["1.0 / (v.norm_squared() - v.norm_squared())", "1.0 / v[0].powi(0).ln()"] {
         assert_eq!(limit(&l(undefined, '+'), &l(undefined, '+')), None, "{undefined}");
         let refused = expanded(&l(undefined, '+'), fields).to_string();
@@ -67,13 +67,13 @@ fn the_limit_of_a_root() {
     let nowhere = "-1.0 - v.norm_squared() / (c * c)";
     assert_eq!(limit(&l(nowhere, '+'), &l(nowhere, '+')), Some(true));
     assert_eq!(limit(&l(nowhere, '+'), &l(nowhere, '-')), Some(false));
-    // A term that rounding would hide.
+    // A term that rounding would hide is noticed in the field.
     let small = "1.0 + 1e-15 - v.norm_squared() / (c * c)";
     assert_eq!(limit(&l(root, '+'), &l(small, '+')), Some(false));
     assert_eq!(limit(&l(small, '+'), &l(small, '+')), Some(true));
 }
 
-/// What a stepper has of an `l` at rest is what its derivatives are there.
+/// The inertia, momentum and potential of such an `l` at rest are its derivatives there.
 #[test]
 fn what_isnt_quadratic_at_rest() {
     let fields = "struct Top { J_d: Inertia, m: f64, rho: Vector3<f64>, up: Vector3<f64> }";

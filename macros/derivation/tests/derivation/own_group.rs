@@ -27,14 +27,14 @@ fn its_mistakes() {
     for wrong in ["", "pub type A", "type A = [];", "type A = [[[1, 0.0], [0.0, 0.0]]];", "type A = [[[1.0, 0.0]]];"] {
         assert!(is_refused(&matrix_group(tokens(wrong))), "{wrong}");
     }
-    // Neither is read by recursion without end.
+    // Five thousand signs and two hundred brackets are refused without a stack overflow.
     let [signs, brackets] = [["-".repeat(5000), String::new()], ["[".repeat(200), "]".repeat(200)]];
     for [before, after] in [signs, brackets] {
         assert!(is_refused(&matrix_group(tokens(&format!("type A = [[[{before} 1.0 {after}]]]; {RELATION}")))));
     }
 }
 
-/// Brackets around an entry, or those of a fragment, change nothing.
+/// Brackets around an entry, or invisible ones of a `macro_rules!` fragment, change nothing.
 #[test]
 fn entries_in_brackets() {
     let group = format!("type Affine = [[[(1.0), 0.0], [0.0, (-0.0)]], ([[0.0, 1.0], [0.0, 0.0]])]; {RELATION}");
@@ -49,11 +49,11 @@ fn a_declaration_asks_it() {
                     { advected (w = up) , group = own :: Affine !, l_d = m * ! F , crate = here } \
                     pub struct Top { m : f64 } }";
     assert_eq!(asked, expected);
-    // Without the mark, an unknown name is a mistake.
+    // The name of a group without the mark `!` is unknown.
     assert!(is_refused(&expanded("group = Affine, l_d = m * F.trace()", item)));
 }
 
-/// A group whose generators are a mistake is said to be one once.
+/// A mistake in a group's generators is reported once, at the group.
 #[test]
 fn a_mistake_of_the_group_is_its_own() {
     let group = matrix_group(tokens("pub type Large = [[[1.0], [2.0]]];")).to_string();

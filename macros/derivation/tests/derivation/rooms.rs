@@ -1,4 +1,4 @@
-//! The rooms of `lib.rs`: who may know whom, and who may know tokens.
+//! The rooms of `lib.rs`: the direction of their imports, and the rooms that use tokens.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -30,7 +30,7 @@ fn text_of(part: &std::ffi::OsStr) -> String {
     part.to_string_lossy().into_owned()
 }
 
-/// `judged` of `judged/verify/mod.rs`, `expand` of `expand.rs`.
+/// The room of a source, as `judged` of `judged/verify/mod.rs` and `expand` of `expand.rs`.
 fn room(file: &str) -> &str {
     file.split('/').next().unwrap_or_default().trim_end_matches(".rs")
 }
@@ -68,7 +68,7 @@ fn depend_in_one_direction() {
             let below = floors.get(other).unwrap_or_else(|| panic!("{file}: crate::{other} isn't a room"));
             assert!(below < floor, "{file}: {room} may not know {other}");
         }
-        // Above its own room there is only the root.
+        // Paths with `super` stay in the room of their file.
         let depth = file.split('/').count() - usize::from(file.ends_with("/mod.rs"));
         assert!(!code.contains(&"super::".repeat(depth)) || !file.contains('/'), "{file}: `super` leaves {room}");
     }
@@ -83,14 +83,14 @@ fn tokens_are_quoted_in_one_room() {
         }
     };
     only(&["quote!", "format_ident!"], &["emit"]);
-    // A pace rewrites the text that was declared.
+    // The room `declared` writes tokens too, as a pace rewrites the declared text.
     only(&["quote_spanned!"], &["declared", "emit"]);
     only(&["syn::"], &["declared", "emit"]);
     only(&["Span"], &["declared", "judged", "emit"]);
     only(&["TokenStream", "proc_macro"], &["declared", "judged", "emit", "expand", "staged", "lib"]);
 }
 
-/// Where the library keeps its public names is its own affair.
+/// Expansions name paths below `__private` alone, so that public names may move.
 #[test]
 fn expansions_name_the_private_module_alone() {
     let emitted = sources().into_iter().filter(|(file, _)| room(file) == "emit").map(|(_, code)| code);
@@ -123,7 +123,8 @@ fn expansions_name_the_private_module_alone() {
     }
 }
 
-/// The rooms are public for these tests, so the compiler doesn't say where a function is used by tests alone.
+/// Every public function of a room is used in the crate: rooms are public for these tests, so the compiler doesn't
+/// report one that tests alone use.
 #[test]
 fn what_a_room_makes_public_is_used_in_the_crate() {
     let is_letter = |letter: char| letter.is_alphanumeric() || letter == '_';
@@ -151,7 +152,8 @@ fn what_a_room_makes_public_is_used_in_the_crate() {
     assert_eq!(unused, Vec::<&str>::new());
 }
 
-/// Their order differs from run to run, which no repetition in one process shows for sure.
+/// No source has a hash map or a hash set: their order differs from run to run, which no repetition in one process
+/// shows for sure.
 #[test]
 fn nothing_is_hashed() {
     for (file, code) in sources() {

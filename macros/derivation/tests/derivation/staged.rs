@@ -9,7 +9,7 @@ fn heavy_top() -> StagedDeclaration {
     staged(&text.parse().expect("tokens"), u64::MAX).expect("a declaration").0
 }
 
-/// As the macro counts it: what a Newton iteration of (3.13) does.
+/// The programs of (3.13) have the fields, the action and the inputs of the declaration.
 #[test]
 fn the_heavy_top_has_its_stages() {
     let top = heavy_top();
@@ -28,7 +28,7 @@ fn the_heavy_top_has_its_stages() {
     assert!(top.derivation.contains("(R_F)* δl_d/δF"));
 }
 
-/// Every register is written before it is read.
+/// Every register of a program is written before it is read.
 #[test]
 fn operations_follow_their_operands() {
     let Program { inputs, literals, operations, outputs } = heavy_top().programs.newton_system;
@@ -51,7 +51,7 @@ fn mistakes_keep_their_places() {
     assert!(staged(&"struct Top { m: f64 }".parse().expect("tokens"), u64::MAX).is_err());
 }
 
-/// Whatever is missing at the end, a derivation that runs out of work is refused, and the next is as it was.
+/// A derivation that runs out of work is refused, wherever that happens, and the next derivation isn't affected.
 #[test]
 fn work_is_bounded() {
     let text = format!("#[lagrangian({HEAVY_TOP})] {}", top("NonstandardInertia")).parse().expect("tokens");

@@ -31,7 +31,7 @@ pub(crate) struct Declared {
 }
 
 impl Declared {
-    /// `None` of a text that begins with no attribute.
+    /// The declaration of a text, or `None` if the text doesn't begin with an attribute.
     pub(crate) fn read(text: &str) -> Option<Self> {
         let mut tokens = tokens(text).into_iter();
         tokens.next().filter(|first| first.to_string() == "#")?;
@@ -70,7 +70,7 @@ impl Declared {
         syn::parse2(expansion.clone()).unwrap_or_else(|error| panic!("{error} in {expansion}"))
     }
 
-    /// Without the fields that the arguments don't name.
+    /// The declaration without the fields that its arguments don't name.
     fn with_named_fields(mut self) -> Self {
         let mut item: syn::ItemStruct = syn::parse2(self.item).expect("a struct");
         let syn::Fields::Named(fields) = &mut item.fields else { panic!("no fields") };
@@ -83,13 +83,13 @@ impl Declared {
         self
     }
 
-    /// Its arguments and its struct.
+    /// The texts of the arguments and of the struct.
     fn text(&self) -> [String; 2] {
         [&self.arguments, &self.item].map(ToString::to_string)
     }
 }
 
-/// The value of a constant in an expansion; that of a text within a block is the text.
+/// The value of a constant in an expansion; for a text within a block the text itself.
 fn constant(name: &str, file: &syn::File) -> Option<String> {
     let constants = file.items.iter().filter_map(|item| match item {
         syn::Item::Impl(implementation) => Some(&implementation.items),
@@ -154,7 +154,7 @@ fn section(title: &str, file: &syn::File) -> Option<String> {
     })
 }
 
-/// The bodies of each conserved momentum, and the field that it is along.
+/// The bodies of each conserved momentum, and the field along which it is conserved.
 fn momenta(declaration: &Declaration) -> String {
     let name = |at: usize| declaration.fields[at].name.to_string();
     let all = conserved(declaration).into_iter().map(|one| {
@@ -164,7 +164,7 @@ fn momenta(declaration: &Declaration) -> String {
     all.chain(["no other".to_owned()]).collect::<Vec<_>>().join("\n")
 }
 
-/// The names of what is bound, one for each value.
+/// The names of the `let`s in a tree, one for each value.
 fn bound_names(tree: &Rc<Tree>) -> String {
     let names = parts(tree).into_iter().filter_map(|part| match &part.kind {
         Kind::Bound(name, _) => Some((Rc::as_ptr(part), name.clone())),
@@ -189,7 +189,7 @@ fn first_item(file: &syn::File) -> String {
     attributes.chain([item.into_token_stream().to_string()]).collect::<Vec<_>>().join("\n")
 }
 
-/// A term of which two declarations may have the same.
+/// A derived term by its name, for a comparison of two declarations.
 fn term(name: &str, declared: &Declared) -> String {
     let [arguments, item] = declared.text();
     let continuous = || equations(&arguments, &item).derived;
@@ -273,7 +273,7 @@ fn paragraphs(text: &str) -> Vec<Paragraph<'_>> {
     all
 }
 
-/// With the holes filled by a row.
+/// A declaration with its holes filled by a row.
 fn filled(declaration: &str, row: &str) -> String {
     let mut parts = row.split('…').skip(1).map(str::trim).peekable();
     let mut filling = parts.next().unwrap_or_default();

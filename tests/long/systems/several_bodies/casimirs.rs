@@ -31,7 +31,7 @@ struct Orbit<'a, W, const D: usize> {
     numbers: &'a dyn Fn(&W) -> Vec<f64>,
     /// The action `E_k·w`, in these numbers.
     moved: &'a dyn Fn(usize, &[f64]) -> Vec<f64>,
-    /// The conserved functions.
+    /// The conserved functions of momentum and parameters.
     kept: &'a OfState<'a, D>,
 }
 

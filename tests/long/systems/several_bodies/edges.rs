@@ -19,7 +19,7 @@ use liestep::laws::samples::Random;
 /// The reason why longer steps have no solution.
 #[derive(Debug, PartialEq)]
 enum End {
-    /// Two solutions meet.
+    /// Two solutions of the equation meet.
     Fold,
     /// A link's part of the Jacobian changes its sign, after which a solution may be on another branch.
     Turned,

@@ -112,7 +112,7 @@ fn bodies_that_are_not_coupled_move_as_alone() {
     }
 }
 
-/// The pairs of three bodies: along the row and between its ends, or at all pairs.
+/// Pairs of three bodies along the row and between its ends are all pairs.
 #[test]
 fn pairs_are_what_is_between_each_two() {
     let bodies = Each::<3>::of([principal([2.0, 3.0, 4.0]), principal([1.0, 1.5, 2.0]), principal([5.0, 4.0, 3.0])]);

@@ -417,7 +417,7 @@ fn a_spacecraft_with_wheels() {
     order(&errors);
     let (there, _) = solved(&system, (at_rest(), velocity), (2.0, 4000));
     assert!((there.0.as_matrix() - exact.0).amax() < 1e-9, "by a solver: {:e}", (there.0.as_matrix() - exact.0).amax());
-    // There are no advected parameters, so wrongly solved steps conserve all momenta.
+    // Wrongly solved steps conserve all momenta, as there are no advected parameters.
     let [before, after] = solved_badly(&system, at_rest(), &velocity);
     assert!((after.spatial_momentum() - before.spatial_momentum()).amax() < 1e-13);
     assert_eq!(part::<6>(&after.momentum(), 1), part::<6>(&momentum, 1));

@@ -1,4 +1,4 @@
-//! Neighbours in a row that are solved together.
+//! Neighbours in a row of bodies whose equations are solved together.
 
 use core::marker::PhantomData;
 
@@ -64,7 +64,7 @@ use crate::numbers::{BlockDiagonal, Bodies, Coordinates as _};
 pub struct Coupling<const N: usize>;
 
 impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Coupling<N> {
-    /// There are `N − 1` pairs; the last of the `N` entries isn't used.
+    /// Entries of `N − 1` pairs; the last of the `N` entries isn't used.
     type Of<T: Copy> = [T; N];
 
     const LINKS_NEIGHBOURS: bool = true;

@@ -1,4 +1,4 @@
-//! The places of a system that a term is put at.
+//! The places of a term in a system: bodies, or pairs of bodies.
 
 mod coupled;
 mod one_body;
@@ -12,56 +12,57 @@ use crate::groups::{Advected, LieGroup, SquareOf};
 use crate::mechanics::effect::{Effect, Matrix, NewtonUpdate, Square, Vector};
 use crate::numbers::Pattern;
 
-/// One place: its number among all, and the body there, or the two bodies.
+/// One place: its number, and its body or its two bodies.
 #[derive(Clone, Copy, Debug)]
 pub struct At {
     /// The number of the place, from zero.
     pub place: usize,
-    /// The bodies, from zero; of a place at one body twice the same.
+    /// The bodies, from zero; a place at one body has it twice.
     pub bodies: [usize; 2],
 }
 
-/// Where the terms `E` of a [`Placement`](super::Placement) are: [`Each`], [`On`], [`Along`], [`Coupling`], [`Between`] or
+/// The places of the terms `E` of a [`Placement`](super::Placement): [`Each`], [`On`], [`Along`], [`Coupling`], [`Between`] or
 /// [`Pairs`].
 #[hot]
 pub trait Places<E: Effect> {
     /// The group of the system.
     type Group: LieGroup<Scalar = E::Scalar>;
-    /// What is advected at all places.
+    /// The advected parameters of the terms at all places.
     type Advected: Advected<Self::Group>;
-    /// Something for each place where momentum equations have a part.
+    /// A list with an entry for each place, empty where terms have no part in the momentum equations.
     type Of<T: Copy>: Copy + AsRef<[T]>;
 
-    /// How many places there are.
+    /// Number of the places.
     const PLACES: usize;
-    /// Why there can't be such places, if there can't.
+    /// The reason why these places can't exist, as the pair of a body with itself; none if they can.
     const WRONG: Option<&'static str>;
-    /// Whether each place is at one body: what couples velocities there stays within its block of the Newton matrix.
+    /// Whether each place is at one body, so that a term that couples velocities stays within the body's block of the
+    /// Newton matrix.
     const AT_ONE_BODY: bool;
-    /// Whether what is between two bodies there depends on where both are within the step. They are neighbours then.
+    /// Whether a term between two bodies may depend on their positions within the step. They are neighbours then.
     const LINKS_NEIGHBOURS: bool = false;
-    /// What they are, for a description, and the bodies if they are fixed.
+    /// The name of the places for a description, and the bodies if they are fixed.
     const NAME: (&'static str, [usize; 2]);
 
     /// Visits the places in their order.
     fn visit(each: impl FnMut(At));
 
-    /// Something for each place, in a loop: see `filled!` for why not by `from_fn`.
+    /// A list with an entry for each place, made by a loop: `filled!` has the reason against `from_fn`.
     fn gather<T: Copy>(make: impl FnMut(At) -> T) -> Self::Of<T>;
 
-    /// The spatial values, from those of each place.
+    /// Advected parameters in space, from those of each place.
     fn spatial(of: impl Fn(usize) -> E::Advected) -> Self::Advected;
 
-    /// What the term at a place sees, and would see in space.
+    /// The advected parameters of the term at a place in the body frame; `spatial` has them in space.
     fn seen(all: &Self::Advected, spatial: &E::Advected, at: At) -> E::Advected;
 
-    /// The matrices of the bodies there.
+    /// The matrices of the bodies at a place.
     fn matrix(all: &<Self::Group as LieGroup>::Matrix, at: At) -> Matrix<E>;
 
-    /// The components of the bodies there.
+    /// The components of the bodies at a place.
     fn components(all: &<Self::Group as LieGroup>::Vector, at: At) -> Vector<E>;
 
-    /// The sum of what is at the places, each with components of its bodies.
+    /// The sum of component vectors, one for each place, each on the components of its bodies.
     fn sum(of: impl FnMut(At) -> Vector<E>) -> <Self::Group as LieGroup>::Vector;
 
     /// The components of all bodies, with those of each body at these places replaced. Places between two bodies replace none.
@@ -72,10 +73,11 @@ pub trait Places<E: Effect> {
         *all
     }
 
-    /// A matrix for all, from one for each place at one body; zero where there is no place.
+    /// The block-diagonal matrix of the system, from a matrix for each place at one body; zero for bodies without a
+    /// place.
     fn squares(of: impl FnMut(At) -> Square<E>) -> SquareOf<Self::Group>;
 
-    /// Both, from a vector and a matrix of each place.
+    /// The vector and the matrix of the system, from those of each place.
     fn system(
         mut of: impl FnMut(At) -> (Vector<E>, Square<E>),
     ) -> (<Self::Group as LieGroup>::Vector, SquareOf<Self::Group>) {
@@ -91,7 +93,7 @@ pub trait Places<E: Effect> {
         )
     }
 
-    /// The same, with the blocks that join neighbours added to those that are given.
+    /// The vector and the matrix of the system; the blocks that couple neighbours are added to the given links.
     fn linked(
         _: &mut LinksOf<Self::Group>,
         of: impl FnMut(At) -> (Vector<E>, Square<E>),
@@ -99,7 +101,7 @@ pub trait Places<E: Effect> {
         Self::system(of)
     }
 
-    /// One of Newton's iterations, from residual and Jacobian of each place.
+    /// One Newton iteration, from residual and Jacobian at each place.
     fn newton_update(
         pattern: Pattern,
         system: impl FnMut(At) -> (Vector<E>, Square<E>),
@@ -109,5 +111,5 @@ pub trait Places<E: Effect> {
     }
 }
 
-/// What joins neighbours in a row of bodies.
+/// The blocks that couple neighbours in a row of bodies.
 type LinksOf<G> = <<G as LieGroup>::Vector as crate::numbers::Coordinates<<G as LieGroup>::Scalar>>::Links;

@@ -15,7 +15,7 @@ pub struct Each<const N: usize>;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct On<const K: usize, const N: usize>;
 
-/// What places at one body have in common.
+/// The functions that [`Each`] and [`On`] share.
 macro_rules! at_one_body {
     () => {
         type Group = [Group<E>; N];
@@ -87,7 +87,7 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
         BlockDiagonal(filled!([zero.outer(&zero); N], |place| of(At { place, bodies: [place; 2] })))
     }
 
-    /// Body by body: what both have in common is computed once.
+    /// The system body by body, so that a computation shared by residual and Jacobian is made once.
     fn system(mut of: impl FnMut(At) -> (Vector<E>, Square<E>)) -> (Bodies<Vector<E>, N>, BlockDiagonal<Square<E>, N>) {
         let zero = Vector::<E>::zero();
         let (mut vectors, mut squares) = ([zero; N], [zero.outer(&zero); N]);
@@ -97,7 +97,7 @@ impl<E: Effect, const N: usize> Places<E> for Each<N> {
         (Bodies(vectors), BlockDiagonal(squares))
     }
 
-    /// Body by body, so that what is solved for one stays in registers.
+    /// The iteration body by body, so that a body's system stays in registers.
     fn newton_update(
         pattern: Pattern,
         mut system: impl FnMut(At) -> (Vector<E>, Square<E>),

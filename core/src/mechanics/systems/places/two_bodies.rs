@@ -22,11 +22,11 @@ pub struct Pairs<const N: usize>;
 
 /// The body of a term on two.
 pub(super) type Body<E> = <Group<E> as Pair>::Body;
-/// Its matrices and its components.
+/// Matrices and components of one of the two bodies.
 pub(super) type BodyMatrix<E> = <Body<E> as LieGroup>::Matrix;
 pub(super) type BodyVector<E> = <Body<E> as LieGroup>::Vector;
 
-/// What places at two bodies have in common.
+/// The functions that all places at two bodies share.
 macro_rules! at_two_bodies {
     () => {
         type Group = [Body<E>; N];
@@ -55,7 +55,7 @@ macro_rules! at_two_bodies {
     };
 }
 
-/// What such places have in common whose momentum equations have no part there.
+/// The functions of places whose terms have no part in the momentum equations: [`Along`], [`Between`] and [`Pairs`].
 macro_rules! of_ends {
     () => {
         type Of<T: Copy> = [T; 0];
@@ -64,7 +64,7 @@ macro_rules! of_ends {
             []
         }
 
-        /// A term that has no unknown part has none.
+        /// A term without an unknown part has a zero Jacobian.
         fn squares(_: impl FnMut(At) -> Square<E>) -> SquareOf<Self::Group> {
             let zero = BodyVector::<E>::zero();
             BlockDiagonal([zero.outer(&zero); N])
@@ -72,7 +72,7 @@ macro_rules! of_ends {
     };
 }
 
-/// What is where neighbours are.
+/// The advected parameters of neighbours in a row.
 macro_rules! neighbours {
     ($name:literal) => {
         type Advected = Neighbours<Group<E>, E::Advected, N>;
@@ -90,7 +90,7 @@ macro_rules! neighbours {
         }
 
         fn spatial(of: impl Fn(usize) -> E::Advected) -> Self::Advected {
-            // The last has no next.
+            // The last body has no next one: its entry is padding.
             Neighbours(core::array::from_fn(|place| of(place.min(N - 2))), PhantomData)
         }
 
@@ -103,7 +103,7 @@ macro_rules! neighbours {
 
 pub(super) use {at_two_bodies, neighbours};
 
-/// Adds the part of each of the two bodies.
+/// Adds the components of each of the two bodies to its place in the row.
 #[hot]
 pub(super) fn add_parts<E: Effect<Group: Pair>, const N: usize>(
     all: &mut [BodyVector<E>; N],
@@ -177,7 +177,7 @@ impl<E: Effect<Group: Pair>, const N: usize> Places<E> for Pairs<N> {
         WhereAllAre::default()
     }
 
-    /// Formed where it is needed: registers don't hold all pairs.
+    /// The relative configuration is computed when a term needs it: registers don't hold those of all pairs.
     fn seen(all: &Self::Advected, spatial: &E::Advected, at: At) -> E::Advected {
         let [first, second] = at.bodies.map(|body| Body::<E>::from_matrix_unchecked(all.0[body]));
         spatial.seen_from(&Group::<E>::pair(&first, &second))

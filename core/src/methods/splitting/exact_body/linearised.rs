@@ -10,7 +10,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::super::linearised::{DifferentiableFlow, Drifted, before_turn, flown};
+use super::super::linearised::{DifferentiableFlow, DriftEvent, before_turn, flown};
 use super::super::quaternion::product;
 use super::{ExactBody, Form};
 use crate::gradients::{Cotangent, Pass, add_shares};
@@ -46,8 +46,8 @@ impl<T: Real> DifferentiableFlow<T> for ExactBody<T> {
     }
 
     #[hot]
-    fn visit<A>(flow: &Self, drift: &Drifted<'_, T, Forms<T>, A>, pass: &mut impl Pass<SO3<T>>) {
-        let (&Drifted { event, first, .. }, Forms(form, [fixed, varied])) = (drift, drift.slopes);
+    fn visit<A>(flow: &Self, drift: &DriftEvent<'_, T, Forms<T>, A>, pass: &mut impl Pass<SO3<T>>) {
+        let (&DriftEvent { event, first, .. }, Forms(form, [fixed, varied])) = (drift, drift.slopes);
         let (momentum, increment) = (event.before.momentum, event.increment);
         if let Some((end, gradient)) = pass.on_the_way_back()
             && let Some((before, shares)) = flow.pulled(form, (&momentum, &increment), end)

@@ -53,7 +53,8 @@ pub(super) struct Functions<T> {
 /// 10⁻¹⁶.
 pub(super) const SHORT: f64 = 0.0075;
 
-/// The size up to which those of [`long`] are, whose next terms are `38 · 18 K¹⁰/π²⁰` and `13 (4/π²)⁹ K⁹ · K/21`.
+/// The size up to which the polynomials of [`long`] are exact, whose next terms are `38 · 18 K¹⁰/π²⁰` and
+/// `13 (4/π²)⁹ K⁹ · K/21`.
 pub(super) const LONG: f64 = 0.05;
 
 /// The polynomials with `℘` to its fifth coefficient and the integral to its fifth, without terms that together are

@@ -77,9 +77,9 @@ pub struct ProcessedSplitting<S: Effect, K: KineticFlow<Scalar<S>>> {
     #[shared]
     parts: Vec<Part>,
     kernel: Splitting<S, K>,
-    /// From the output to the end of the kernel's first share, from which all its steps are the same.
+    /// The stages from the output to the end of the kernel's first share, where all steps of the kernel begin.
     enter: Stages<K::Drift, Scalar<S>>,
-    /// From there to the output.
+    /// The stages from the end of the kernel's first share to the output.
     leave: Stages<K::Drift, Scalar<S>>,
 }
 
@@ -100,7 +100,7 @@ impl<S: Effect> Stepper<S> {
         S: DiscreteLagrangian<Group = SO3<<S as Term>::Scalar>> + Regular,
         K: KineticFlow<Scalar<S>>,
     {
-        // This plan is constructed only to check the scene and the step.
+        // The own step's plan is constructed only to check the scene and the step.
         OwnStep::new(&scene, h)?;
         let plan = ProcessedSplitting::new(&scene, h, flow, scheme)?;
         Ok(Stepper { scene, plan })

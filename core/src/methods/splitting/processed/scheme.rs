@@ -4,7 +4,7 @@
 //! in the Lie algebra with `[B, [B, [B, A]]] = 0`, from random starts, with small errors at the next order, and
 //! polished to 30 digits. `tests/accuracy/conditions.rs` has the conditions.
 
-// All digits that were found, although a double has fewer.
+// Coefficients have all digits that were found, although a double has fewer.
 #![allow(clippy::excessive_precision, clippy::unreadable_literal)]
 
 use super::super::scheme::{Flow, SplittingScheme};

@@ -1,4 +1,4 @@
-//! An expansion is the same in the fiftieth repetition.
+//! Fifty expansions of a declaration have the same tokens.
 
 use crate::common::{HEAVY_TOP, expanded, top};
 

@@ -3,7 +3,7 @@
 use crate::common::bodies::{CART, LINKS, OF_CART, OF_LINKS};
 use crate::common::{expanded, is_refused, is_self_adjoint};
 
-/// On every group, whatever its Cayley transform looks like; a discretisation is its own adjoint, or is refused.
+/// Discretisations on every group, whatever the form of its Cayley transform, are self-adjoint or refused.
 #[test]
 fn on_every_group() {
     let groups = [
@@ -43,7 +43,7 @@ fn on_every_group() {
     assert!(!is_refused(&expanded(own, "struct Body { j: f64, r: Vector2<f64>, up: Vector2<f64> }")));
 }
 
-/// Each rule is its own adjoint for several bodies too, and its limit is `l`.
+/// Each rule of discretisation is its own adjoint for several bodies too, and its limit is `l`.
 #[test]
 fn discretisations_of_several_bodies() {
     for (arguments, item) in [(LINKS, OF_LINKS), (CART, OF_CART)] {

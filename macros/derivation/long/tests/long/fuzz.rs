@@ -1,4 +1,4 @@
-//! Whatever is written, an expansion is an error to show or items: no panic, no hang.
+//! Every text expands to an error message or to items: no panic, no hang.
 
 use std::time::{Duration, Instant};
 
@@ -9,7 +9,7 @@ use crate::common::{HEAVY_TOP, expand, is_refused, tokens, top};
 /// Far more than any accepted declaration needs without optimisation.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// What random texts are made of: tokens, and phrases with a tilde between them.
+/// The parts of random texts: tokens, and phrases with a tilde between them.
 const WORDS: &str = r#"
     F I h w up rho J_d m g k A group generators SO3 < > f64 "SO3" advected l_d crate = , + - * / ! & . .. ; : :: ? |
     # 'a let if else match move unsafe async mut ref as return break loop true _ r#type self super 0 1 2 3 0.5 2.0
@@ -29,7 +29,7 @@ pub(crate) fn pieces(text: &str) -> Vec<String> {
     spaced.split_whitespace().map(str::to_owned).collect()
 }
 
-/// Drops closing brackets that close nothing, and closes what is open.
+/// Drops unmatched closing brackets, and closes open ones.
 pub(crate) fn balanced(pieces: &[String]) -> String {
     let (mut open, mut text) = (Vec::new(), String::new());
     for piece in pieces {
@@ -53,7 +53,7 @@ pub(crate) fn balanced(pieces: &[String]) -> String {
     text
 }
 
-/// Deletes, duplicates, exchanges or replaces.
+/// A change of a text: a piece deleted, duplicated, exchanged with another or replaced.
 #[derive(Clone, Debug)]
 pub(crate) enum Mutation {
     Delete(usize),
@@ -89,10 +89,10 @@ pub(crate) fn mutated(text: &str, mutations: &[Mutation]) -> String {
 }
 
 fn survives(arguments: &str, item: &str) {
-    // What no lexer accepts never reaches a macro.
+    // Texts that no lexer accepts never reach a macro.
     let (Ok(arguments), Ok(item)) = (arguments.parse(), item.parse::<proc_macro2::TokenStream>()) else { return };
     let start = Instant::now();
-    // An item that isn't one is handed on as it stands, for the compiler to complain.
+    // A text that isn't an item is returned unchanged, and the compiler reports it.
     let expansion = expand(arguments, &item);
     if syn::parse2::<syn::Item>(item.clone()).is_ok() {
         is_refused(&expansion);
@@ -144,7 +144,7 @@ proptest! {
     }
 }
 
-/// The seeds themselves are accepted, or mutating them would test the errors only.
+/// The seeds of the mutations are right declarations: otherwise the test would reach error paths only.
 #[test]
 fn the_seeds_are_accepted() {
     assert!(!is_refused(&expand(tokens(HEAVY_TOP), &tokens(&top("NonstandardInertia")))));

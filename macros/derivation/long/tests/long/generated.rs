@@ -1,5 +1,6 @@
-//! Random declarations, half of them right: these are accepted, the others refused by a message, and what is accepted has
-//! the numbers of its text, which is evaluated apart. What some of them expand to is one crate, which rustc has to accept.
+//! Random declarations, half of them right: right ones are accepted, wrong ones refused by a message, and accepted ones
+//! have the numbers of their text, which is evaluated apart. What some of them expand to is one crate, which rustc has
+//! to accept.
 
 mod apart;
 pub(crate) mod texts;
@@ -25,7 +26,7 @@ use liestep_derivation::mathematics::derive::{Derivation, View, derive};
 use liestep_derivation::program::{Beginning, Input, Scalariser, components};
 use liestep_derivation::{MOST_WORK, staged};
 
-/// `l_d`, or what `discretise` makes of `l`.
+/// The discrete Lagrangian of a text: `l_d`, or a declared `l` discretised.
 fn lagrangian(declaration: &Declaration, text: &Expr, env: &Env) -> Option<f64> {
     let at = |env: &Env| value(text, env).filter(|value| value.entries.len() == 1).map(|value| value.at(0, 0));
     let h = env["h"].at(0, 0);
@@ -81,7 +82,7 @@ fn expected(declaration: &Declaration, text: &Expr, env: &Env) -> Option<Vec<f64
     Some(all)
 }
 
-/// Values of all names; increments are of this size.
+/// Random values of all names, with increments of this size.
 fn environment(random: &mut Random, declaration: &Declaration, size: f64) -> Env {
     let (any, mut env) = (random.matrix(3, 3), Env::new());
     let vectors = ["eta", "eta_next", "a", "b", "up", "wind"].map(|name| (name, random.matrix(3, 1)));
@@ -113,7 +114,7 @@ fn environment(random: &mut Random, declaration: &Declaration, size: f64) -> Env
     env
 }
 
-/// What is derived, at these values.
+/// The derived terms in numbers, at these values of the names.
 fn found(declaration: &Declaration, env: &Env) -> Option<Vec<f64>> {
     let mut errors = Errors::default();
     let mut tree = check::check(declaration, &mut errors)?;
@@ -157,7 +158,7 @@ fn found(declaration: &Declaration, env: &Env) -> Option<Vec<f64>> {
     Some(evaluated(&graph, &outputs, &|input: Input| inputs[&input.symbol].at(input.row, input.column)))
 }
 
-/// What two bodies see, from where they are.
+/// The values of advected parameters of two bodies, at these positions of the bodies.
 fn seen(declaration: &Declaration, env: &Env, places: &[Matrix; 4]) -> Env {
     let mut env = env.clone();
     for w in &declaration.advected {
@@ -172,7 +173,7 @@ fn seen(declaration: &Declaration, env: &Env, places: &[Matrix; 4]) -> Env {
     env
 }
 
-/// The slopes of a constraint, and what they should be.
+/// The derived slopes of a constraint, and those by differences of its text.
 fn slopes(random: &mut Random, declaration: &Declaration, text: &Expr, env: &Env) -> Option<[Vec<f64>; 2]> {
     let mut errors = Errors::default();
     let ConstraintSlopes { lowered, graph, entries, .. } =
@@ -212,11 +213,11 @@ fn slopes(random: &mut Random, declaration: &Declaration, text: &Expr, env: &Env
     Some([found, expected])
 }
 
-/// Whether what is derived has the numbers of the text; nothing where the text has none.
+/// Whether the derived terms have the numbers of the text; none if the text has no value.
 fn agrees(random: &mut Random, role: Role, (arguments, item): (&str, &str), text: &Expr) -> Option<bool> {
     let declaration = parse::declaration(role, &tokens(arguments), &tokens(item), &mut Errors::default())?;
     let declaration = Declaration { is_text: true, ..declaration };
-    // Roots may have values for small increments alone.
+    // Roots may have values for small increments alone, so that draws alternate between two sizes.
     (0..30).find_map(|draw| {
         let env = environment(random, &declaration, if draw % 2 == 0 { 0.4 } else { 0.02 });
         let [found, expected] = if role == Role::Constraint {
@@ -236,7 +237,7 @@ fn agrees(random: &mut Random, role: Role, (arguments, item): (&str, &str), text
     })
 }
 
-/// The message, if there is one; of a text that is read while a program runs, where that is asked for and makes steps.
+/// The message of a refusal, if there is one; `is_late` also reads the text as a library does at run time.
 fn refusal(role: Role, arguments: &str, item: &str, is_late: bool) -> Option<String> {
     if is_late && role != Role::Constraint {
         let text = format!("#[{}({arguments})] {item}", role.attribute());
@@ -247,14 +248,15 @@ fn refusal(role: Role, arguments: &str, item: &str, is_late: bool) -> Option<Str
     is_refused(&expansion).then(|| message().unwrap_or_default())
 }
 
-/// The time that this thread has worked, where the system tells it: what else the machine does isn't in it.
+/// The processor time of this thread, or the elapsed time if the system doesn't report that: work of other programs
+/// isn't in it.
 fn worked(clock: Instant) -> Duration {
     let told = fs::read_to_string("/proc/thread-self/schedstat").ok();
     let nanoseconds = told.and_then(|text| text.split(' ').next()?.parse().ok());
     nanoseconds.map_or_else(|| clock.elapsed(), Duration::from_nanos)
 }
 
-/// Crates of a hundred declarations, with their roles, which have to compile.
+/// Compiles crates of a hundred declarations, with their roles.
 fn compile(declarations: &[String]) {
     let core = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../core");
     let folder = env::temp_dir().join(format!("liestep-generated-{}", std::process::id()));
@@ -278,7 +280,8 @@ fn compile(declarations: &[String]) {
     fs::remove_dir_all(folder).expect("the folder is ours");
 }
 
-/// Each kind in turn, and the declarations on products that small errors are made of.
+/// Right declarations of each kind in turn are certified, and those on products to which small errors are added
+/// elsewhere.
 #[test]
 fn right_declarations_are_certified() {
     for number in 0..48 {
@@ -300,7 +303,7 @@ fn right_and_wrong_declarations() {
     let asked = |name: &str, usual: u64| env::var(name).map_or(usual, |text| text.parse().expect("a whole number"));
     let (seed, count) = (asked("LIESTEP_SEED", 1), asked("LIESTEP_COUNT", 3_000));
     let (mut refused, mut accepted, mut compared, mut wrong, mut idle) = (Vec::new(), Vec::new(), 0, Vec::new(), 0);
-    // What rustc isn't asked about needn't be emitted, and is wrong always.
+    // If rustc compiles none of the declarations, all are wrong ones, and are read as at run time.
     let (compiled, mut slowest) = (asked("LIESTEP_COMPILED", count), (Duration::ZERO, String::new()));
     let clock = Instant::now();
     for number in 0..count {
@@ -356,7 +359,7 @@ fn right_and_wrong_declarations() {
     );
     assert!(50 * idle <= count, "{idle} of {count} have a term that is zero");
     assert!(wrong.is_empty() && refused.len() as u64 <= 3 * count.div_ceil(3_000), "{wrong:#?} {refused:#?}");
-    // Only a text has a bound of work.
+    // The bound on work holds for declarations read at run time alone.
     assert!(cfg!(debug_assertions) || compiled > 0 || slowest.0 < Duration::from_secs(1), "{slowest:?}");
     accepted.truncate(usize::try_from(compiled).expect("small"));
     compile(&accepted);

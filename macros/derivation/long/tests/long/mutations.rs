@@ -1,4 +1,4 @@
-//! What is derived wrongly by as little as one part in `2⁵⁰` is refused, whatever it is and in every declaration.
+//! Derived terms with an error of one part in `2⁵⁰` are refused, for each term of every declaration.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -23,10 +23,10 @@ use liestep_derivation::mathematics::derive::{Derivation, View, derive};
 use liestep_derivation::mathematics::symbolic::{Expression, Rational, SymbolId, degree};
 use liestep_derivation::program::{ByNumbers, Derivatives, Input, Kernel, NodeId, WeightedGradient, kernel};
 
-/// By how much a coefficient is too large.
+/// The relative errors of a coefficient.
 const ERRORS: [(i128, i128); 2] = [(1, 10_000_000), (1, 1 << 50)];
 
-/// What is derived, with each of its own.
+/// A derived term of a declaration, by its name and its place in the derivation.
 type Term = (&'static str, fn(&mut Derivation) -> Option<&mut Expression>);
 
 const TERMS: [Term; 14] = [
@@ -55,13 +55,13 @@ const STAGES: [fn(&mut Kernel) -> &mut [NodeId]; 5] = [
     |kernel| kernel.kick_derivative.as_deref_mut().unwrap_or_default(),
 ];
 
-/// Of a monomial, the degree in a symbol.
+/// The degree of a monomial in a symbol.
 type Degrees<'a> = &'a dyn Fn(SymbolId) -> usize;
 
-/// Which monomials are meant, by their places and degrees.
+/// The choice of the monomials with an error, by their places and degrees.
 type Place = Box<dyn for<'a> Fn(usize, Degrees<'a>) -> bool>;
 
-/// Of each term: in how many declarations it is, how many errors of it were tried, and how many were refused.
+/// Counts for each term: of the declarations that have it, of the errors tried, and of those refused.
 type Table = BTreeMap<&'static str, [usize; 3]>;
 
 fn assert_all_refused(table: &Table) {
@@ -79,7 +79,7 @@ struct Case {
 }
 
 impl Case {
-    /// `None` of what has no step.
+    /// The derivation of a declaration, or `None` if it has no step.
     fn new(role: Role, arguments: &TokenStream, item: &TokenStream) -> Option<Self> {
         let mut errors = Errors::default();
         let declaration = parse::declaration(role, arguments, item, &mut errors)?;
@@ -105,7 +105,7 @@ impl Case {
         verify(self.subject(derived), kernel)
     }
 
-    /// All that is emitted, at a point.
+    /// The values of all emitted outputs at one point.
     fn emitted(&self, derived: &Derivation, kernel: &Kernel) -> Vec<Residue> {
         let (mut number, group) = (Residue::stream(9), &self.declaration.group);
         let element = Element::by_cayley(group, &mut number).expect("points");
@@ -113,7 +113,7 @@ impl Case {
         emitted(&Identities::new(sample.of, kernel), &sample, number)
     }
 
-    /// Whether a wrong term is refused; nothing where nothing of it is emitted.
+    /// Whether a wrong term is refused; none if the wrong term isn't emitted.
     fn is_refused(&self, change: impl Fn(&mut Derivation)) -> Option<bool> {
         let mut derived = self.chosen.derived.clone();
         change(&mut derived);
@@ -123,7 +123,8 @@ impl Case {
         (is_refused || reaches()).then_some(is_refused)
     }
 
-    /// What is wrong of a term: all of it, one of as many coefficients, or those of what one body sees of another.
+    /// The places of errors in a term: all of its monomials, one of the first `most`, or those with a relative
+    /// configuration.
     fn places(&self, term: &Expression, most: usize) -> Vec<(Option<&'static str>, Place)> {
         let mut places: Vec<(_, Place)> = vec![(None, Box::new(|_: usize, _: Degrees| true))];
         for first in 0..term.len().min(most) {
@@ -139,7 +140,7 @@ impl Case {
         places
     }
 
-    /// Each term with each error that is meant.
+    /// Checks that errors of each term are refused; `is_meant` selects terms and errors.
     fn check_terms(&self, most: usize, table: &mut Table, is_meant: impl Fn(usize, usize) -> bool) {
         for (at, (name, of)) in TERMS.into_iter().enumerate() {
             let Some(term) = of(&mut self.chosen.derived.clone()).filter(|term| !term.is_zero()).cloned() else {
@@ -167,7 +168,7 @@ impl Case {
         }
     }
 
-    /// Each entry of each stage.
+    /// Checks that an error in each entry of each stage is refused.
     fn check_stages(&self) {
         let Choice { derived, kernel, .. } = &self.chosen;
         for (stage, of) in STAGES.into_iter().enumerate() {
@@ -187,7 +188,7 @@ impl Case {
     }
 }
 
-/// With some of the coefficients larger by a share.
+/// The term with the selected coefficients larger by a relative error.
 fn larger(term: &Expression, error: Rational, is_meant: &Place) -> Expression {
     let mut sum = term.clone();
     for (place, (monomial, coefficient)) in term.terms().enumerate() {
@@ -247,7 +248,7 @@ fn small_errors_of_terms_and_stages() {
     assert_all_refused(&table);
 }
 
-/// A derivative of a step, and the term that is wrong with it.
+/// A derivative of a step to be made wrong, and the name of its term.
 type Derivative = (&'static str, fn(&mut Derivatives) -> &mut NodeId);
 
 const DERIVATIVES: [Derivative; 12] = [
@@ -269,7 +270,8 @@ fn of_kick(all: &mut Derivatives) -> &mut WeightedGradient {
     all.of_kick.as_mut().expect("a potential has one")
 }
 
-/// Of each derivative of a step that is emitted, and of both numbers of an entry beside the diagonal, which is one symbol.
+/// Errors of each emitted derivative of a step are refused, and so are errors of both numbers of an off-diagonal entry,
+/// which share one symbol.
 #[test]
 fn small_errors_of_gradients() {
     let prepared = prepared(Role::Lagrangian, &format!("{HEAVY_TOP}, gradients"), &top("NonstandardInertia"));
@@ -289,7 +291,7 @@ fn small_errors_of_gradients() {
     for (at, (term, place)) in DERIVATIVES.into_iter().enumerate() {
         assert_eq!(by(Rational::new(1, 1 << 50), place), Err(Objection::Disagrees(term)), "{at}");
     }
-    // Twice as much for either number of an entry beside the diagonal, and the inertia of a kick with the other sign.
+    // The derivative by either number of an off-diagonal entry is doubled, and the inertia of a kick changes its sign.
     let at =
         |by: &ByNumbers, number| by[0].iter().position(|(own, _)| *own == number).expect("an entry of the inertia");
     let doubled = found(&|all| {
@@ -310,7 +312,7 @@ fn small_errors_of_gradients() {
     assert!(matches!(right, Ok(Sureness::Certified(100..))), "{right:?}");
 }
 
-/// Each rule of the derivatives of a step, by what goes forwards and by what goes back.
+/// Each rule of differentiation of a step is right forwards and in reverse.
 #[test]
 fn derivatives_of_all_functions() {
     let l_d = "0.5 * log(F).dot(&(J * log(F))) / h - h * (1.0 + w.norm_squared()).sqrt() * (m / (2.0 + w.z)).ln()
@@ -321,7 +323,7 @@ fn derivatives_of_all_functions() {
     assert!(matches!(found, Ok(Sureness::Certified(100..))), "{found:?}");
 }
 
-/// Each slope of a constraint with each error; returns how many.
+/// Checks that errors of each slope of a constraint are refused; returns the number of slopes.
 fn check_slopes(declaration: &Declaration, trees: &[Rc<Tree>]) -> usize {
     let held = || held(declaration, trees.to_vec(), &mut Errors::default()).expect("a constraint");
     let (sureness, rows) = constraint(declaration, &held()).expect("right");
@@ -351,8 +353,8 @@ fn small_errors_of_slopes() {
     assert_eq!(check_slopes(&declaration, &trees), 2 * 2 * 3 * 4 * 2);
 }
 
-/// All declarations of the repository, those that other tests compile and what was once refused among them, with one term and error in `share` of
-/// each, another in the next; returns how many declarations there are.
+/// All declarations of the repository, of other tests and of [`once_refused`] are tried with one term and error in
+/// `share` of them, another one in the next declaration; returns the number of declarations.
 fn check_everywhere(share: usize, most: usize) -> usize {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
     let (mut all, mut table, mut count) = (Vec::new(), Table::new(), 0);
@@ -394,7 +396,7 @@ fn small_errors_everywhere() {
     assert!(check_everywhere(1, 1) > 100);
 }
 
-/// All that is emitted, at a point.
+/// The values of all emitted outputs at one point.
 fn emitted<T: Number>(identities: &Identities, sample: &Sample<T>, mut number: impl FnMut() -> T) -> Vec<T> {
     let mut vector = || identities.of.derived.group.generators.iter().map(|_| number()).collect::<Vec<T>>();
     let inputs = identities.inputs_of_stages(sample, [&vector(), &vector()]);

@@ -1,4 +1,4 @@
-//! Right declarations that were once refused, and advice that is accepted.
+//! Right declarations that earlier versions refused, and advice that is accepted.
 
 use liestep_derivation::mathematics::group::{NAMES, built_in};
 
@@ -6,7 +6,7 @@ use crate::common::{expanded, message, struct_of};
 
 const KINETIC: &str = "((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)";
 
-/// A declaration: its arguments and its struct.
+/// A declaration on these fields: its arguments and its struct.
 fn with(fields: &[&str], arguments: String) -> [String; 2] {
     let item = struct_of(fields, &arguments);
     [arguments, item]
@@ -26,7 +26,8 @@ fn square(f: &str, j: &str) -> String {
     format!("(({f} - I) * {j} * ({f} - I).transpose()).trace() / (2.0 * h)")
 }
 
-/// Of what another body sees and of what is advected, `log` and `exp`; and a body's place with its attitude, twice.
+/// Potentials with `log` and `exp` of relative configurations and of advected matrices; and a body's position beside
+/// its attitude.
 fn functions_of_what_is_seen() -> Vec<[String; 2]> {
     let mut all = Vec::new();
     for u in
@@ -51,7 +52,7 @@ fn functions_of_what_is_seen() -> Vec<[String; 2]> {
     all.into_iter().map(|arguments| with(&FIELDS, arguments)).collect()
 }
 
-/// Any smooth `l_d`: its limit needn't be quadratic in the velocity, nor `h` stand in powers alone.
+/// Lagrangians `l_d` that are smooth: their limit needn't be quadratic in the velocity, nor `h` stand in powers alone.
 fn of_any_degree() -> Vec<[String; 2]> {
     let kinetic = [
         "-h * (1.0 - ((F - I) * J_d * (F - I).transpose()).trace() / (h * h)).sqrt()",
@@ -69,7 +70,7 @@ fn of_any_degree() -> Vec<[String; 2]> {
     kinetic.into_iter().map(|kinetic| with(&FIELDS, of(kinetic))).collect()
 }
 
-/// A square is one, however it is written.
+/// Squares written as products are squares.
 fn squares_as_products() -> Vec<[String; 2]> {
     let spring = "group(F = SO3, d = R1), advected(w = up.seen_from(F), s = d.seen_from(space))";
     let l = |potential: &str| {
@@ -86,7 +87,7 @@ fn squares_as_products() -> Vec<[String; 2]> {
     all.map(|arguments| with(&FIELDS, arguments)).into()
 }
 
-/// The thesis' trace on each group, one of four rows among them, and made discrete by a rule.
+/// The trace of the thesis on each group, one of four rows among them, discretised by a rule.
 fn trace_by(rule: &str) -> Vec<[String; 2]> {
     let affine = "Sim2, generators = [[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 0.0]],
         [[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
@@ -104,7 +105,7 @@ fn trace_by(rule: &str) -> Vec<[String; 2]> {
 
 const BY_CAYLEY: [&str; 2] = ["trapezoid(Cayley)", "chord(Cayley)"];
 
-/// The trace in each discretisation is accepted, or refused with advice that is accepted.
+/// The trace of the thesis is accepted in each discretisation, or refused with advice that is accepted.
 #[test]
 fn no_circle_of_advice() {
     for rule in ["trapezoid", "trapezoid(exp)", "chord", "chord(exp)", "midpoint(exp)"] {
@@ -136,7 +137,7 @@ fn many_norms() -> [String; 2] {
     with(&[&FIELDS[..], &points.each_ref().map(String::as_str)].concat(), declaration)
 }
 
-/// What was once refused, of each kind.
+/// Declarations of each kind that earlier versions refused.
 pub(crate) fn once_refused() -> Vec<[String; 2]> {
     let by_cayley = BY_CAYLEY.map(trace_by).concat();
     [functions_of_what_is_seen(), of_any_degree(), squares_as_products(), by_cayley, vec![many_norms()]].concat()

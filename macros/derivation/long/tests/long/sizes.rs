@@ -6,16 +6,17 @@ use liestep_derivation::program::kernel;
 
 use crate::common::{derived, expanded, is_refused};
 
-/// What threads get by default.
+/// The default stack of a thread, in bytes.
 const STACK: usize = 2 << 20;
-/// A hang, not a machine that twenty others share: the largest accepted declaration takes some seconds of its own.
+/// The time after which an expansion counts as a hang, on a machine shared with twenty others: the largest accepted
+/// declaration takes some seconds of its own.
 const PATIENCE: Duration = Duration::from_secs(600);
 
 const ITEM: &str =
     "struct Top { J_d: NonstandardInertia, A: Matrix3<f64>, k: f64, rho: Vector3<f64>, up: Vector3<f64> }";
 const KINETIC: &str = "(J_d.trace() - (F * J_d).trace()) / h + h * k * w.dot(&(A * rho))";
 
-/// Expands on a small stack; whether it was refused.
+/// Expands on a small stack, and returns whether the declaration was refused.
 fn refused(l_d: &str) -> bool {
     let start = Instant::now();
     let arguments = format!("group = SO3, advected(w = up), l_d = {l_d}");
@@ -37,7 +38,7 @@ fn nested_tokens() {
     let closed = brackets.iter().map(|[open, close]| (*open, *close));
     for (open, close) in closed.chain(prefixes.split('~').map(|open| (open, ""))) {
         for count in [20, 60, 400, 2_000, 100_000] {
-            // The lexer of a real compilation has its own limit for brackets; here it would recurse.
+            // The compiler's lexer has its own limit for brackets, and that of this test would recurse.
             if !close.is_empty() && count > 400 {
                 continue;
             }
@@ -65,7 +66,7 @@ fn long_sums_and_products() {
     assert!(refused(&with_term(&format!("{KINETIC} + h * A{transposes}.trace()"))));
 }
 
-/// `let b = a ∘ a; let c = b ∘ b; …`
+/// A chain of `let`s, each of which doubles the one before: `let b = a ∘ a; let c = b ∘ b; …`.
 fn doubling(first: &str, step: impl Fn(&str) -> String, last: impl Fn(&str) -> String, count: usize) -> String {
     let lets = (0..count).map(|at| format!("let a{} = {};", at + 1, step(&format!("a{at}"))));
     let lets = lets.collect::<Vec<_>>().join(" ");
@@ -122,7 +123,7 @@ fn many_factors() {
     }
 }
 
-/// A turn of the first two rows and all shifts: what is emitted grows like the fourth power of the rows.
+/// A rotation of the first two rows and all shifts: emitted code grows like the fourth power of the rows.
 #[test]
 fn groups_of_many_rows() {
     let operations = |rows: usize| {

@@ -1,4 +1,4 @@
-//! An expansion must not be felt.
+//! Times of expansions, which a user mustn't notice.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -12,7 +12,7 @@ use syn::visit_mut::VisitMut;
 use crate::common::{HEAVY_TOP, arguments_and_struct, expanded, top};
 use liestep_derivation::declared::Role;
 
-/// The time of some expansions, the quickest first, as the others measure what else the machine was doing.
+/// The times of some expansions, the shortest first: longer ones include work of other programs.
 fn times(count: usize, arguments: &str, item: &str) -> Vec<Duration> {
     let mut times: Vec<Duration> = (0..count)
         .map(|_| {
@@ -69,7 +69,7 @@ pub(crate) fn declarations_in(folder: &Path, found: &mut Vec<(String, Role, Toke
     entries.sort();
     for path in entries {
         if path.is_dir() {
-            // Mistakes, and what cargo makes.
+            // Folders of mistakes and of build outputs are left out.
             if !path.ends_with("tests/ui") && !path.ends_with("target") {
                 declarations_in(&path, found);
             }
@@ -81,7 +81,7 @@ pub(crate) fn declarations_in(folder: &Path, found: &mut Vec<(String, Role, Toke
     }
 }
 
-/// Prints the time of each, the slowest last. A declaration within a macro isn't seen.
+/// Prints the time of each declaration's expansion, the slowest last. A declaration within a macro isn't seen.
 #[test]
 #[ignore = "measures all declarations of the repository, a minute: `cargo test -p liestep-derivation-long-tests every_declaration -- --ignored --nocapture`"]
 fn every_declaration_of_the_repository_expands_the_same_twice() {
@@ -91,7 +91,7 @@ fn every_declaration_of_the_repository_expands_the_same_twice() {
         declarations_in(&root.join(folder), &mut found);
     }
     assert!(found.len() > 50, "only {} declarations found", found.len());
-    // Equal before and after a change that should change nothing.
+    // The digest of all expansions, to be compared before and after a change that should change nothing.
     let mut digest = DefaultHasher::new();
     let mut times: Vec<(Duration, String)> = found
         .into_iter()

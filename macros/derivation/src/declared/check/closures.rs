@@ -21,7 +21,7 @@ const MOST_CALLS: usize = 200;
 pub(super) struct Closure {
     parameters: Vec<(Ident, Shape)>,
     body: Expr,
-    /// The names in scope of its body beside the parameters.
+    /// The names in scope of the function's body beside the parameters.
     scopes: Vec<BTreeMap<Spelling, Binding>>,
 }
 

@@ -87,7 +87,7 @@ impl Checker<'_> {
                 self.errors.push(at, format!("`{name}` is a translation, which is added: its inverse is `-{name}`"));
                 None
             }
-            // The group has the inverses of its elements.
+            // The inverse of an increment is that of the group.
             (Kind::Name(Name::Increment(_)), _) => Some(Tree::new(span, shape, Kind::Inverse(argument))),
             (_, Shape::Matrix(rows, columns)) if rows != columns || rows > 3 => {
                 self.mismatch("inverse", "a matrix of up to 3 × 3", shape, at)

@@ -17,11 +17,11 @@ pub(super) struct Arguments {
     pub(super) group: Option<group::GroupName>,
     /// The factors of a product: the increment of each, and its group.
     pub(super) factors: Vec<(Ident, group::GroupName)>,
-    /// The name, its source, and whether it is prescribed for each step.
+    /// The name of an advected parameter, its source, and whether it is prescribed for each step.
     pub(super) advected: Vec<(Ident, Source, bool)>,
-    /// `l_d`, the virtual work or the constraint, with its key.
+    /// The expression of `l_d`, of the virtual work or of the constraint, with its key.
     pub(super) expression: Option<(Ident, Expr)>,
-    /// `l`, with its key.
+    /// The expression of `l`, with its key.
     pub(super) continuous: Option<(Ident, Expr)>,
     /// The names of the velocities, with their key.
     pub(super) velocity: Option<(Ident, Vec<Ident>)>,
@@ -42,9 +42,9 @@ pub(super) struct Arguments {
 
 /// The value of an advected parameter.
 pub(super) enum Source {
-    /// `up`.
+    /// A field, as `up`.
     Field(Ident),
-    /// `up.seen_from(F_1)`, `F_2.seen_from(F_1)`, `F_2.seen_from(space)`.
+    /// A field or a body in the frame of a body, as `up.seen_from(F_1)`, `F_2.seen_from(F_1)`, `F_2.seen_from(space)`.
     View { what: Ident, from: Ident },
 }
 
@@ -243,7 +243,7 @@ fn factors(input: ParseStream, errors: &mut Errors) -> syn::Result<Vec<(Ident, g
     Ok(factors)
 }
 
-/// `F_1 = SO3`.
+/// Reads a factor of a product, as `F_1 = SO3`.
 fn factor(input: ParseStream, errors: &mut Errors) -> syn::Result<(Ident, group::GroupName)> {
     let span = input.span();
     let message = "write `group(F_1 = SO3, F_2 = SO3)`: the increment of each body, and its group";
@@ -260,7 +260,7 @@ fn factor(input: ParseStream, errors: &mut Errors) -> syn::Result<(Ident, group:
     Ok((name, named))
 }
 
-/// `= Omega`, `(Omega_1, Omega_2)`.
+/// Reads names behind a key: `= Omega`, `(Omega_1, Omega_2)`.
 fn velocities(key: &Ident, input: ParseStream) -> syn::Result<Vec<Ident>> {
     if input.peek(syn::token::Paren) {
         let message = "write `velocity(Omega_1, Omega_2)`: a name for each factor of the group, in their order";
@@ -278,7 +278,7 @@ fn velocities(key: &Ident, input: ParseStream) -> syn::Result<Vec<Ident>> {
     Ok(vec![input.call(Ident::parse_any)?])
 }
 
-/// `(Omega_1, Omega_2)`.
+/// Reads names in parentheses, as `(Omega_1, Omega_2)`.
 fn in_parentheses(input: ParseStream, message: &str) -> syn::Result<Vec<Ident>> {
     let content;
     parenthesized!(content in input);
@@ -412,7 +412,7 @@ fn advected_pair(input: ParseStream) -> syn::Result<(Ident, Source)> {
     Ok((name, Source::Field(field)))
 }
 
-/// `.seen_from(F_1)`.
+/// Reads the rest of a source, `.seen_from(F_1)`.
 fn seen(what: Ident, input: ParseStream) -> syn::Result<Source> {
     input.parse::<Token![.]>()?;
     let message = format!("write `{what}.seen_from(…)`, with the increment of the body that sees it");

@@ -14,7 +14,7 @@ use crate::mathematics::symbolic::Rational;
 /// The name behind `group =`.
 pub(super) struct GroupName {
     path: Path,
-    /// Whether it is `Name!`, a group that `matrix_group!` declares.
+    /// Whether the name is `Name!`, a group that `matrix_group!` declares.
     is_own: bool,
 }
 
@@ -45,7 +45,7 @@ impl GroupName {
 pub(super) const ONE_OR_SEVERAL: &str =
     "write the name of a group, `group = SO3`, or those of several bodies, `group(F_1 = SO3, F_2 = SO3)`";
 
-/// `SO3`, `own::Affine!`.
+/// Reads the name of a group, as `SO3` or `own::Affine!`.
 pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<GroupName> {
     let span = input.span();
     let mut path: Path = input.parse().map_err(|_| syn::Error::new(span, ONE_OR_SEVERAL))?;
@@ -162,7 +162,7 @@ const IN_PRODUCTS: [&str; 4] = ["SO3", "R1", "R2", "R3"];
 /// The limit on factors: more would make the derived code grow without bound.
 const MOST_FACTORS: usize = 4;
 
-/// Reports increments, of one body or of several, whose names mean something else, which they would hide.
+/// Reports increments, of one body or of several, whose names have another meaning.
 pub(super) fn check_increments(role: Role, factors: &[Factor], taken: &TakenNames, errors: &mut Errors) {
     // An increment without a name is `F`, which no other name can be.
     for Factor { name, place, .. } in factors.iter().filter(|factor| factor.name != "F") {
@@ -183,7 +183,7 @@ pub(super) fn check_increments(role: Role, factors: &[Factor], taken: &TakenName
     }
 }
 
-/// Names that other declarations have.
+/// Names that other parts of the declaration have.
 pub(super) struct TakenNames {
     pub(super) fields: Vec<String>,
     pub(super) advected: Vec<String>,

@@ -128,7 +128,7 @@ pub(super) fn discretised(emitter: &Emitter, discretisation: Discretisation) -> 
     if discretisation.coordinates == Coordinates::Cayley && !name.is_empty() {
         let name = Ident::new(name, span);
         return quote_spanned! {span=>
-            /// The Lagrangian as it is made of the declared `l`.
+            /// The discrete Lagrangian as it is made from the declared `l`.
             fn l_d(&self, f: &#square, w: &<Self as #private::Term>::Advected, h: #scalar) -> #scalar {
                 #private::#name::<Self, #private::CayleyRetraction>(self, f, w, h)
             }

@@ -112,7 +112,7 @@ impl Build<'_> {
         self.tree(shape, Kind::Name(Name::Increment(self.factor)))
     }
 
-    /// `F` and `F⁻¹`.
+    /// The increment `F` of a step, and its inverse `F⁻¹`.
     pub(super) fn whole_increment(&self) -> [Rc<Tree>; 2] {
         let increment = self.increment();
         let inverse =

@@ -45,9 +45,9 @@ type Place<T> = [Value<T>; 2];
 /// The dependence of a function on those before it, at all positions of the bodies and for all parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Row {
-    /// The function is independent of them.
+    /// The function is independent of those before it.
     New,
-    /// The function depends on them.
+    /// The function depends on those before it.
     Follows,
     /// The function is constant.
     Constant,

@@ -37,7 +37,7 @@ pub struct Terms {
     /// The Jacobian, built first, so that its nodes are those of a graph with nothing else in it.
     pub jacobian: Vec<NodeId>,
     pub momentum: Vec<NodeId>,
-    /// The term is empty for a force, like those below.
+    /// The right-trivialised momentum `(R_F)* δl_d/δF`, empty for a force, like the terms below.
     pub right: Vec<NodeId>,
     pub left: Vec<NodeId>,
     pub diamond: Vec<NodeId>,
@@ -162,8 +162,8 @@ impl<'a> Identities<'a> {
         Evaluation::new(values).of(self.of.tree).first()
     }
 
-    /// The declared work along the direction, of the displacement at each end alone; their sum must be the work of
-    /// both.
+    /// Compares the declared virtual work along the direction, of the displacement at each end alone; their sum must be
+    /// the work of both.
     fn declared_work<T: Number>(&self, point: &Point<T>, same: &mut Same<T>) -> Result<DeclaredValues<T>, Objection> {
         let group = &self.of.derived.group;
         let work = |before: T, after: T| {

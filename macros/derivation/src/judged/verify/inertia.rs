@@ -22,7 +22,7 @@ pub enum KineticPart {
     Singular(Vec<usize>),
     /// `J` has no value at any: the kinetic part has no second derivative.
     NotSmooth,
-    /// `J` is negative at all values.
+    /// `J` is negative at all sample values.
     Negative,
 }
 

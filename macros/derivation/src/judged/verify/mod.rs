@@ -95,7 +95,7 @@ const DRAWS: u64 = 60;
 
 type Values<T> = BTreeMap<Name, Value<T>>;
 
-/// The values in other numbers.
+/// The values of all names, converted to another kind of number.
 fn over<T: Number, U>(values: &Values<T>, of: impl Fn(T) -> U) -> Values<U> {
     values.iter().map(|(name, value)| (*name, value.over(&of))).collect()
 }

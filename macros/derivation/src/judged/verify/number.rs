@@ -23,7 +23,7 @@ pub trait Number:
 
     fn is_defined(self) -> bool;
 
-    /// Whether it is zero, as far as it is known.
+    /// Whether the number is zero, as far as its digits are known.
     fn is_zero(self) -> bool;
 }
 

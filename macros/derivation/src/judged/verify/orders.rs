@@ -164,7 +164,8 @@ struct Behaviour {
 }
 
 impl Behaviour {
-    /// Whether it is the same for all `F`, velocities and advected parameters, or of a force for all displacements.
+    /// Whether the term is the same for all `F`, velocities and advected parameters, or of a force for all
+    /// displacements.
     fn is_idle(&self) -> bool {
         [self.along, self.at_rest, self.fixed].into_iter().all(Series::is_zero)
     }
@@ -235,7 +236,8 @@ impl Search<'_> {
         }
     }
 
-    /// Whether a number in it, or what is computed from numbers alone, is zero: a macro may have written it.
+    /// Whether a written number in the term, or a result of written numbers alone, is zero: a macro may have written
+    /// it.
     fn has_written_zero(&mut self, tree: &Rc<Tree>) -> bool {
         let [at, ..] = &mut self.at;
         let is_number =
@@ -243,7 +245,7 @@ impl Search<'_> {
         parts(tree).into_iter().any(|part| is_number(part) && at.of(part).first().is_zero())
     }
 
-    /// At the terms that are zero on the whole group.
+    /// Reports the terms that are zero on the whole group, at their places.
     fn report_zero(&mut self, terms: &[Rc<Tree>]) {
         for term in terms {
             if self.behaviour(term).is_zero() && !self.has_written_zero(term) {
@@ -252,7 +254,7 @@ impl Search<'_> {
         }
     }
 
-    /// At the first of the terms with `F` alone, where their sum is constant.
+    /// Reports terms with `F` alone whose sum is constant, at the first of them.
     fn report_cancelling(&mut self, terms: &[Rc<Tree>]) {
         let is_meant = |term: &&Rc<Tree>| has(term, IS_INCREMENT) && !has(term, IS_ADVECTED);
         let mut with_increment = terms.iter().filter(is_meant).peekable();

@@ -24,7 +24,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// `h`.
+    /// The series of the step `h`.
     pub const STEP: Self = Self::from_one_coefficient(1, Residue::ONE);
 
     const fn from_one_coefficient(first: i32, value: Residue) -> Self {

@@ -25,7 +25,7 @@ impl<T: Number> Value<T> {
         Self { rows: entries.len(), columns: 1, entries: entries.to_vec() }
     }
 
-    /// The matrix in other numbers.
+    /// The matrix, converted to another kind of number.
     pub fn over<U>(&self, of: impl Fn(T) -> U) -> Value<U> {
         Value { rows: self.rows, columns: self.columns, entries: self.entries.iter().map(|&entry| of(entry)).collect() }
     }

@@ -18,9 +18,9 @@ use crate::mathematics::symbolic::{Expression, Structure, SymbolId, Symbols, Var
 /// A `let` that isn't multiplied out.
 #[derive(Clone, Debug)]
 pub struct Let {
-    /// `v`.
+    /// The symbol `v` of the `let`.
     pub symbol: SymbolId,
-    /// `d`.
+    /// The defining expression `d` of the `let`.
     pub value: Expression,
 }
 
@@ -29,7 +29,7 @@ pub struct Let {
 pub struct ClosedLet {
     pub symbol: SymbolId,
     pub value: Expression,
-    /// `δv`.
+    /// The variation `δv` of the `let`'s symbol.
     pub direction: SymbolId,
     /// `λ`, and `⟨λ, δv⟩`.
     pub multiplier: SymbolId,

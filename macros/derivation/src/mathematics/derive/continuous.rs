@@ -91,12 +91,12 @@ pub struct Continuous {
     /// The velocity of each factor of the group; other lists are by factors, too.
     pub velocities: Vec<Element>,
     pub advected: Vec<AdvectedSymbol>,
-    /// `η` and `ζ`.
+    /// The directions `η` and `ζ` of each factor.
     pub directions: Vec<[Element; 2]>,
     pub lagrangian: Expression,
-    /// `μ`.
+    /// The momentum `μ`.
     pub momentum: Expression,
-    /// `M`.
+    /// The second derivative `M` by the velocity.
     pub hessian: Expression,
     /// `∂l/∂w ⋄ w`.
     pub diamond: Expression,

@@ -11,14 +11,14 @@ use crate::mathematics::symbolic::{Expression, Rational};
 pub enum SelfAdjointness {
     /// The normal forms are equal.
     Symbolic,
-    /// The values are equal at random points, where nothing is rounded.
+    /// The two sides have equal values at random points, where nothing is rounded.
     Exact,
-    /// The values are equal at squares of `F`, where the composition of `exp` and `log` is known.
+    /// The two sides have equal values at squares of `F`, where the composition of `exp` and `log` is known.
     WithoutBound,
-    /// The values differ, but are equal if all vectors have one for their last coordinate, which is guaranteed by the
-    /// types of points, not by those of vectors.
+    /// The two sides have different values, but equal ones if all vectors have one for their last coordinate, which is
+    /// guaranteed by the types of points, not by those of vectors.
     ForPoints,
-    /// The values differ.
+    /// The two sides have different values.
     No,
 }
 

@@ -101,7 +101,7 @@ fn series(x: f64, first: f64, ratio: impl Fn(f64) -> f64) -> f64 {
     f64::NAN
 }
 
-/// `G⁽ᵏ⁾(0)`.
+/// The leading coefficient `G⁽ᵏ⁾(0)`.
 fn leading(k: u8) -> f64 {
     Function::LogRatio(k).at_zero().map_or(f64::NAN, Rational::to_f64)
 }

@@ -1,6 +1,6 @@
 //! Continuous Lagrangians of several bodies.
 
-/// Two links, and a body on a cart on a line.
+/// Declarations of two links, and of a body on a cart that moves on a line.
 pub(crate) const LINKS: &str = "group(F_1 = SO3, F_2 = SO3), velocity(Omega_1, Omega_2),
     advected(w_1 = up.seen_from(F_1), w_2 = up.seen_from(F_2), Q = F_2.seen_from(F_1)),
     l = 0.5 * (hat(Omega_1) * J_1 * hat(Omega_1).transpose()).trace()

@@ -1,4 +1,4 @@
-//! What tests of the derivation share: declarations, their expansions and numbers.
+//! Helpers of the derivation's tests: declarations, their expansions and numbers.
 
 pub(crate) mod bodies;
 pub(crate) mod numeric;
@@ -15,16 +15,16 @@ use liestep_derivation::mathematics::derive::{Derivation, derive};
 use liestep_derivation::program::{Graph, Input, Node, NodeId};
 use proc_macro2::TokenStream;
 
-/// (3.13).
+/// The heavy top, (3.13).
 pub(crate) const HEAVY_TOP: &str = "group = SO3, advected(w = up),
     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * m * g * w.dot(&(rho + F * rho))";
 
-/// The parameters of (3.13) with an inertia of that type.
+/// The struct of the heavy top (3.13), with an inertia of this type.
 pub(crate) fn top(inertia: &str) -> String {
     format!("struct Top {{ J_d: {inertia}, m: f64, g: f64, rho: Vector3<f64>, up: Vector3<f64> }}")
 }
 
-/// A struct with those of the fields that a declaration names.
+/// A struct with those of the fields that occur in a declaration's arguments.
 pub(crate) fn struct_of(fields: &[&str], arguments: &str) -> String {
     let names: Vec<&str> = arguments.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
     let is_used = |field: &&&str| field.split(':').next().is_some_and(|name| names.contains(&name));
@@ -44,7 +44,7 @@ pub(crate) fn expanded(arguments: &str, item: &str) -> TokenStream {
     expand(tokens(arguments), &tokens(item))
 }
 
-/// What is derived from a declaration, through all phases.
+/// The derivation of a declaration, through all phases.
 pub(crate) fn derived(arguments: &str, item: &str) -> Derivation {
     let mut errors = Errors::default();
     let declaration = parse::declaration(Role::Lagrangian, &tokens(arguments), &tokens(item), &mut errors);
@@ -54,7 +54,7 @@ pub(crate) fn derived(arguments: &str, item: &str) -> Derivation {
     cheapest(readings, derive, &declaration, &tree, &mut errors).expect("something to derive").derived
 }
 
-/// An expansion is an error for the compiler to show, or items; returns whether it is an error.
+/// Whether an expansion is an error for the compiler to report; asserts that it is items otherwise.
 pub(crate) fn is_refused(expansion: &TokenStream) -> bool {
     let text = expansion.to_string();
     if text.contains("compile_error") {
@@ -66,7 +66,7 @@ pub(crate) fn is_refused(expansion: &TokenStream) -> bool {
     false
 }
 
-/// A declaration, and the trees of what it declares.
+/// A declaration, and the trees of its functions.
 pub(crate) fn checked_as(role: Role, arguments: &str, item: &str) -> (Declaration, Vec<Rc<Tree>>) {
     let mut errors = Errors::default();
     let declaration = parse::declaration(role, &tokens(arguments), &tokens(item), &mut errors).expect("a declaration");

@@ -1,4 +1,5 @@
-//! Expressions evaluated on matrices of numbers, term by term: shares no rewrite and no scalarisation.
+//! Expressions evaluated on matrices of numbers, term by term, without the rewrites and the scalarisation of the
+//! library.
 
 use std::collections::BTreeMap;
 

@@ -22,7 +22,7 @@ impl Random {
         usize::try_from((self.0 >> 24) % u64::try_from(bound).expect("a bound")).expect("below the bound")
     }
 
-    /// Between −1 and 1.
+    /// A number between −1 and 1.
     #[allow(clippy::cast_precision_loss)] // 30 bits
     pub(crate) fn signed(&mut self) -> f64 {
         self.below(1 << 30) as f64 / f64::from(1 << 29) - 1.0
@@ -37,7 +37,7 @@ impl Random {
         exponential(&axis.scaled(3.0))
     }
 
-    /// A value with the promised structure.
+    /// A random matrix with a structure, such as symmetry.
     fn of(&mut self, structure: Structure, (rows, columns): (usize, usize)) -> Matrix {
         let any = self.matrix(rows, columns);
         match structure {
@@ -61,7 +61,7 @@ pub(crate) fn exponential(u: &Matrix) -> Matrix {
     Matrix::identity(3).plus(&hat.scaled(first)).plus(&hat.times(&hat).scaled(second))
 }
 
-/// One symbol of each kind.
+/// Symbols of each structure, with random values.
 pub(crate) struct World {
     pub(crate) symbols: Symbols,
     pub(crate) values: Values,

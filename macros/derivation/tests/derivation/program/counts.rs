@@ -1,4 +1,4 @@
-//! How many operations the heavy top (3.13) costs, so that a change that costs more is noticed.
+//! Counts of the operations of the heavy top (3.13), so that a change that costs more is noticed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ fn heavy_top(inertia: &str) -> Derivation {
     derived(HEAVY_TOP, &top(inertia))
 }
 
-/// `U(F, w) − a` and its Jacobian with the entries of `F` as inputs, and `k₀`: what a step on matrices costs.
+/// Operations of a step on matrices: `U(F, w) − a` and its Jacobian with the entries of `F` as inputs, and `k₀`.
 fn on_matrices(derived: &Derivation, stage: Stage) -> Operations {
     let mut graph = Graph::default();
     let (directions, none) = (&derived.directions, BTreeMap::new());
@@ -39,7 +39,7 @@ fn of_stage(kernel: &Kernel, stage: Stage) -> Operations {
     count(&kernel.graph, &all, Some(stage))
 }
 
-/// `a = μ + k₀`, with the kick in it.
+/// Operations before the solve: `a = μ + k₀`, with the kick in it.
 fn before_the_solve(kernel: &Kernel) -> usize {
     let outputs = [kernel.kick_before.as_slice(), &kernel.residual, &kernel.jacobian].concat();
     3 + count(&kernel.graph, &outputs, Some(Stage::Step)).arithmetic
@@ -60,7 +60,7 @@ fn in_principal_axes() {
     assert!(matrices.arithmetic <= 18 && matrices.sign_flips <= 6, "{matrices}");
     assert!(on_matrices(&derived, Stage::Construction).arithmetic <= 14);
     assert!(3 + on_matrices(&derived, Stage::Step).arithmetic <= 18);
-    // Sums and differences of the entries of J_d, h/2, and the lever.
+    // Operations at construction: sums and differences of the entries of `J_d`, `h/2`, and the lever.
     assert!(of_stage(&kernel, Stage::Construction).arithmetic <= 12);
     assert!(before_the_solve(&kernel) <= 18, "{}", before_the_solve(&kernel));
     assert!(left_momentum(&derived).arithmetic <= 52, "{}", left_momentum(&derived));
@@ -80,7 +80,7 @@ fn with_a_full_tensor() {
     assert!(left_momentum(&derived).arithmetic <= 76, "{}", left_momentum(&derived));
 }
 
-/// A term that isn't declared costs nothing: a free body has no work before the solve but what belongs to `a`.
+/// Operations of a free body: without a potential there is no work before the solve but for `a`.
 #[test]
 fn without_a_potential() {
     let free = derived(

@@ -1,4 +1,4 @@
-//! Scalar operations against the values of the expressions that they came from, and their number.
+//! Graphs of scalar operations: their values, and their number.
 
 mod counts;
 mod values;

@@ -1,5 +1,5 @@
-//! What folds, and what is left alone. That entries and products that are multiplied out keep their values, the check of
-//! each declaration says.
+//! Constant folding in a graph, and operations that aren't folded. That entries and products that are multiplied out
+//! keep their values, the check of each declaration says.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -68,7 +68,7 @@ fn powers_by_squaring() {
     }
 }
 
-/// What is known earlier is combined first, so that an iteration makes one addition and one multiplication only.
+/// Values of earlier stages are combined first, so that an iteration makes one addition and one multiplication only.
 #[test]
 fn sums_and_products_go_by_stage() {
     let mut graph = Graph::default();

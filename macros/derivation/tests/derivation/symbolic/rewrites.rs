@@ -1,5 +1,5 @@
 //! Each rewrite on numbers, and on numbers that break its hypothesis, where it has to be wrong: otherwise the test
-//! could not tell a rewrite from no rewrite.
+//! would pass without the rewrite.
 
 use crate::common::numeric::{Matrix, Values, value};
 use crate::common::random::{Random, World};
@@ -15,7 +15,7 @@ struct Law {
 }
 
 impl Law {
-    /// Breaks the promise of one symbol.
+    /// A law about one symbol, whose structure the broken values lack.
     fn about(seed: u64, promised: fn(&World) -> SymbolId) -> Self {
         let mut random = Random::new(seed);
         let world = World::new(&mut random);
@@ -54,7 +54,7 @@ fn inverse_neighbours_cancel() {
             v[&w.a].times(&v[&w.f].transpose()).times(&v[&w.f]).times(&v[&w.symmetric])
         });
         law.holds_only_with_promise(&times(&f, &f_t), |v| v[&w.f].times(&v[&w.f].transpose()));
-        // Across the ends of a trace.
+        // A rotation and its transpose cancel across the ends of a trace.
         let cyclic = times(&times(&f, &a), &f_t).trace(&w.symbols);
         assert_eq!(cyclic, a.trace(&w.symbols));
         law.holds_only_with_promise(&cyclic, |v| {
@@ -84,7 +84,8 @@ fn traces_rotate() {
         let number = |x: &Expression| value(x, &w.symbols, &w.values);
         assert!(number(&trace(&one)).agrees(&number(&trace(&other)), 1e-12));
         assert!(number(&trace(&one)).agrees(&Matrix::scalar(number(&one).trace()), 1e-12));
-        // The control: another order has another trace, and without the trace the rotated product is another matrix.
+        // The control: another order of factors has another trace, and without the trace the rotated product is another
+        // matrix.
         assert_ne!(trace(&one), trace(&wrong));
         assert!(!number(&trace(&one)).agrees(&number(&trace(&wrong)), 1e-3));
         assert_ne!(one, other);
@@ -184,7 +185,7 @@ fn triple_products_are_sorted() {
     }
 }
 
-/// With words instead of symbols, on either side of the hat and inside.
+/// Triple products of words instead of symbols, on either side of the hat and inside.
 #[test]
 fn triple_products_of_words() {
     for seed in seeds() {
@@ -219,7 +220,7 @@ fn hats_turn_with_rotations() {
         assert_eq!(turned, f.times(&u, &w.symbols).hat(&w.symbols));
         law.holds_only_with_promise(&turned, |v| v[&w.f].times(&v[&w.u].hat()).times(&v[&w.f].transpose()));
     }
-    // An orthogonal matrix doesn't promise its determinant.
+    // An orthogonal matrix may have the determinant −1.
     let mut symbols = Symbols::default();
     let f = symbols.add("F", (3, 3), Structure::Orthogonal, Stage::Iteration);
     let u = symbols.add("u", (3, 1), Structure::General, Stage::Step);
@@ -240,7 +241,7 @@ fn hat_and_vee_undo_each_other() {
         assert_eq!(skew, a.clone().skew_part(&w.symbols));
         let number = |x: &Expression| value(x, &w.symbols, &w.values);
         assert!(number(&skew).agrees(&number(&a).vee().hat(), 1e-14));
-        // The control: of a matrix that isn't skew, hat(vee) leaves the skew part only.
+        // The control: for a matrix that isn't skew, hat(vee) is the skew part only.
         assert!(!number(&skew).agrees(&number(&a), 1e-3));
         // vee(Aᵀ) = −vee(A).
         assert_eq!(a.transpose(&w.symbols).vee(&w.symbols), a.vee(&w.symbols).scaled(-Rational::ONE));
@@ -261,7 +262,7 @@ fn outer_products_are_cut() {
         let [a, u, v] = [w.a, w.u, w.v].map(|id| &w.values[&id]);
         assert!(number(&trace).agrees(&Matrix::scalar(u.times(&v.transpose()).times(a).trace()), 1e-12));
         assert!(!number(&exchanged).agrees(&number(&form), 1e-3));
-        // Cut in the middle of a word: u (vᵀ A u) vᵀ.
+        // The word is cut in its middle: u (vᵀ A u) vᵀ.
         let middle = [w.u, w.v, w.a].map(|id| w.expression(id));
         let [x, y, m] = &middle;
         let y_t = y.transpose(&w.symbols);
@@ -323,7 +324,7 @@ fn scalars_fold() {
     assert_eq!(h.times(&a, &w.symbols), a.times(&h, &w.symbols));
     assert_eq!(a.times(&Expression::identity(3), &w.symbols), a);
     assert_eq!(Expression::identity(3).trace(&w.symbols), Expression::rational(Rational::integer(3)));
-    // A quotient that isn't of one scalar stays.
+    // A quotient of two different scalars stays.
     let k = w.expression(w.k);
     assert_ne!(h.times(&k.clone().power(-1, &w.symbols), &w.symbols), Expression::identity(1));
     let sine = |x: &Expression| Expression::function(Function::Sin, x.clone());

@@ -3,7 +3,7 @@
 use crate::common::random::{Random, World};
 use liestep_derivation::mathematics::symbolic::{Expression, Rational, Variations, variation};
 
-/// The rules one by one, in closed form.
+/// The rules of variation one by one, in closed form.
 #[test]
 fn rules() {
     let w = World::new(&mut Random::new(2));

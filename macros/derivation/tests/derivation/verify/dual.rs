@@ -1,10 +1,10 @@
-//! Dual numbers.
+//! Derivatives by dual numbers.
 
 use liestep_derivation::judged::verify::dual::Dual;
 use liestep_derivation::judged::verify::number::Number as _;
 use liestep_derivation::mathematics::symbolic::Function;
 
-/// Against central differences.
+/// Derivatives by dual numbers agree with central differences.
 #[test]
 fn derivatives() {
     let functions = [Function::Sqrt, Function::Ln, Function::Exp, Function::Sin, Function::Cos];

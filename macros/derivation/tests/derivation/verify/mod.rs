@@ -1,4 +1,4 @@
-//! Each check fails on a broken term.
+//! The self-check fails on each broken term.
 
 mod dual;
 mod residue;
@@ -66,7 +66,7 @@ impl Case {
         verify(self.subject(), &kernel(&self.derived)).expect("right").sureness
     }
 
-    /// What is found after a change of the derived terms.
+    /// The result of the self-check after a change of the derived terms.
     fn after(&self, change: impl Fn(&mut Derivation)) -> Result<SelfAdjointness, &'static str> {
         let mut derived = self.derived.clone();
         change(&mut derived);
@@ -95,7 +95,7 @@ fn both() -> [Case; 2] {
 
 type Of = fn(&mut Derivation) -> &mut Expression;
 
-/// Whatever is wrong with any entry of these, the tables of small errors have.
+/// The self-check names the broken term; the tables of small errors have every entry of these terms.
 #[test]
 fn what_is_wrong_is_named() {
     let terms: [(&str, Of); 8] = [
@@ -131,7 +131,7 @@ fn with_one_sign_changed(expression: &Expression) -> Expression {
 
 #[test]
 fn adjoints() {
-    // A symbolic form that claims too much is an error.
+    // A Lagrangian that the symbolic form wrongly finds self-adjoint is an error.
     let declared = Case::new(
         "group = SO3, l_d = (J_d.trace() - (F * J_d).trace()) / h + h * F[(0, 1)]",
         "struct Body { J_d: NonstandardInertia }",
@@ -140,7 +140,8 @@ fn adjoints() {
     assert_eq!(declared.after(|d| d.adjoint_defect = Expression::zero((1, 1))), Err("adjoint"));
 }
 
-/// By hand: a field and `h` count as 1, `F` on a group of dimension one as 2/Δ with a denominator of degree 2.
+/// The degrees of expressions, counted by hand: a field and `h` count as 1, `F` on a group of dimension one as 2/Δ with
+/// a denominator of degree 2.
 #[test]
 fn degrees() {
     let of = |l_d: &str| {
@@ -158,21 +159,21 @@ fn degrees() {
     assert_eq!(of("k * F[(0, 1)].powi(2) / h"), 5);
     assert_eq!(of("k / h + F[(0, 1)] / h"), 3);
     assert_eq!(of("F[(0, 1)] / (h + 1.0) + k / (1.0 + h)"), 3);
-    // Of two divisors one counts as often as there are quotients: 4/(Δ h (h + k)), less the same, has five.
+    // A sum of quotients with two divisors is 4/(Δ h (h + k)), and less another such sum it has the degree five.
     assert_eq!(of("F[(0, 1)] / h + k / (h + k)"), 5);
     assert_eq!(of("k + F[(0, 1)]"), 3);
-    // Over a common denominator 5/(Δ² h).
+    // The sum over a common denominator is 5/(Δ² h).
     assert_eq!(of("k * F[(0, 1)] / h + F[(0, 1)].powi(2)"), 5);
-    // One function, whose argument is 3/Δ and has four values on the two sides with their negatives.
+    // A function counts by its argument, which is 3/Δ and has four values on the two sides with their negatives.
     assert_eq!(of("(k + F[(0, 1)]).sin()"), 1 + 16 * 10);
-    // A tower of powers is too high for few points to decide.
+    // A tower of powers has too high a degree for few points to decide.
     let tower = (1..13).map(|k| format!("let x{k} = x{}.powi(16);", k - 1)).collect::<Vec<_>>().concat();
     assert!(of(&format!("{{ let x0 = k * F[(0, 1)]; {tower} x12 }}")) > 1 << 48);
     let declared = Case::new("group = R1, l_d = k * F[(0, 1)].powi(2) / h", "struct Body { k: f64 }");
     assert!(matches!(declared.sureness(), Sureness::Certified(100..)));
 }
 
-/// What is wrong by a multiple of `2⁶¹ − 1` passes, and then nothing is claimed.
+/// A derivation that is wrong by a multiple of `2⁶¹ − 1` passes, and then nothing is claimed.
 #[test]
 fn constants_that_are_zero_in_the_field() {
     let l_d = |mass: &str| format!("group = R1, l_d = k * F[(0, 1)].powi(2) / h + {mass} * F[(0, 1)].powi(2) / h");
@@ -189,7 +190,7 @@ fn constants_that_are_zero_in_the_field() {
     assert_eq!(other.after(|d| d.energy = with_one_sign_changed(&d.energy)), Err("discrete energy"));
 }
 
-/// Groups of other generators have no Cayley transforms; there series are compared, and see what is wrong.
+/// Groups without Cayley transforms are checked by series, which notice an error.
 #[test]
 fn groups_without_points() {
     let squeezes = "group = Mine, generators = [[[1.0, 0.0], [0.0, -2.0]]]";

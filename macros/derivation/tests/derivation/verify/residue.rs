@@ -1,4 +1,4 @@
-//! Residues modulo `2⁶¹ − 1`.
+//! Residues modulo `2⁶¹ − 1`, and the stand-ins for functions of them.
 
 use liestep_derivation::judged::verify::dual::Dual;
 use liestep_derivation::judged::verify::number::Number;
@@ -32,7 +32,7 @@ fn functions_keep_no_other_relations() {
         let x = next();
         assert_ne!((-x).apply(Function::Sqrt), x.apply(Function::Sqrt));
         assert_ne!(x.apply(Function::Stumpff(1)), x.apply(Function::Stumpff(2)));
-        // Relations that no derivation uses.
+        // Relations that no derivation uses don't hold for the stand-ins.
         let squared = |function| x.apply(function) * x.apply(function);
         assert_ne!((x * x).apply(Function::Sqrt), x);
         assert_ne!(squared(Function::Sqrt), x);
@@ -47,7 +47,8 @@ fn functions_keep_no_other_relations() {
     assert!(!Residue::ZERO.apply(Function::Ln).is_defined());
 }
 
-/// Else a wrong share of `√2` would be right at all points, or wrong at all.
+/// Functions have other values at other points: otherwise a wrong multiple of `√2` would be right at all points, or
+/// wrong at all.
 #[test]
 fn functions_differ_from_point_to_point() {
     let two = Residue::ONE + Residue::ONE;
@@ -60,8 +61,8 @@ fn functions_differ_from_point_to_point() {
     }
 }
 
-/// The symmetries, `c_k = 1/k! − q c_{k+2}`, and what the derivatives of `θ/sin θ` follow from, as far as they are asked
-/// for.
+/// Asserts the symmetries of the functions, `c_k = 1/k! − q c_{k+2}`, and the relations that the used derivatives of
+/// `θ/sin θ` rest on.
 fn assert_relations<T: Number>(x: T) {
     let of = |value: u8| T::of(Rational::integer(value.into()));
     let none = |rest: T| assert!(rest.is_zero(), "{rest:?} at {x:?}");
@@ -81,7 +82,7 @@ fn assert_relations<T: Number>(x: T) {
     for k in 0..6 {
         none(of(2) * u * g(k + 2) + of(2 * k + 3) * s * g(k + 1) - of(2) * of(k + 1) * of(k + 1) * g(k));
     }
-    // What a graph makes of the second derivative.
+    // The second derivative as a graph computes it.
     none(g(1) * (of(3) - of(8) * u) - of(2) * (T::ONE - s * u * g(2)));
 }
 

@@ -15,20 +15,21 @@ fn what_has_no_value() {
     assert!(!(Series::ONE / h).apply(Function::Exp).is_defined());
 }
 
-/// That two are the same as far as both are known, which is up to a power at least.
+/// Asserts that two series are equal as far as both are known, and that this is up to a power at least.
 fn assert_equal(found: Series, expected: Series, known: i32) {
     let rest = found - expected;
     assert!(rest.is_defined() && rest.is_zero() && rest.is_known_below(known), "{found:?} and {expected:?}");
 }
 
-/// `a + b h + c h²` of numbers of the field.
+/// The series `a + b h + c h²` with numbers of the field.
 fn quadratic(next: &mut impl FnMut() -> Residue) -> Series {
     let h = Series::STEP;
     let [a, b, c] = [next(), next(), next()].map(Series::constant);
     a + h * (b + h * c)
 }
 
-/// `y' = y/(2x)` for a root, whatever stands in for it, so that `y²/x` stays what it is at the first coefficient.
+/// The derivative of a root is `y' = y/(2x)` for its stand-in, so that `y²/x` stays what it is at the first
+/// coefficient.
 #[test]
 fn roots_in_the_field() {
     let (mut next, h) = (Residue::stream(3), Series::STEP);
@@ -45,7 +46,8 @@ fn roots_in_the_field() {
     }
 }
 
-/// Against the chain rule, `f(x(h))' = f'(x) x'` with the derivatives that dual numbers have, and `1/(1 − h) = Σ hⁿ`.
+/// Series of functions obey the chain rule, `f(x(h))' = f'(x) x'` with the derivatives of dual numbers, and
+/// `1/(1 − h) = Σ hⁿ`.
 #[test]
 fn functions_in_the_field() {
     let (mut next, h, one) = (Residue::stream(4), Series::STEP, Series::ONE);
@@ -56,7 +58,7 @@ fn functions_in_the_field() {
         });
         terms.fold(Series::ZERO, |sum, term| sum + term)
     };
-    // The slope is known below the power that the series of seven coefficients ends at.
+    // The slope is known below the last power of a series with seven coefficients.
     let assert_slope = |y, expected: Series| {
         for power in 0..LENGTH_I32 - 1 {
             assert_eq!(slope(y).at(power), expected.at(power), "{y:?}");
@@ -78,7 +80,7 @@ fn functions_in_the_field() {
     assert!((0..LENGTH_I32).all(|n| geometric.at(n) == Residue::ONE));
 }
 
-/// `Σ (−x)ⁱ/(2i + k)!` about zero.
+/// The Stumpff functions are `Σ (−x)ⁱ/(2i + k)!` about zero.
 #[test]
 fn stumpff_in_the_field() {
     let small = |n: usize| Residue::of(Rational::integer(n.try_into().expect("small")));

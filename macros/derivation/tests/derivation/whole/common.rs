@@ -25,18 +25,18 @@ pub(super) fn named(name: &str) -> Generators {
     group.generators.iter().map(|one| one.iter().map(|entry| entry.to_f64()).collect()).collect()
 }
 
-/// Traceless matrices of three rows.
+/// The generators of SL(3): traceless matrices of three rows.
 pub(super) fn sl3() -> Generators {
     let pairs = (0..3).flat_map(|i| (0..3).filter(move |&j| i != j).map(move |j| unit(3, &[(i, j, 1.0)])));
     pairs.chain([[(0, 0, 1.0), (1, 1, -1.0)], [(1, 1, 1.0), (2, 2, -1.0)]].map(|diagonal| unit(3, &diagonal))).collect()
 }
 
-/// Skew matrices.
+/// The generators of SO(n): skew matrices.
 pub(super) fn so(n: usize) -> Generators {
     (0..n).flat_map(|i| (i + 1..n).map(move |j| unit(n, &[(i, j, -1.0), (j, i, 1.0)]))).collect()
 }
 
-/// Hamiltonian matrices of four rows.
+/// The generators of Sp(4): Hamiltonian matrices of four rows.
 pub(super) fn sp4() -> Generators {
     let mut list: Generators =
         (0..4).map(|at| (at / 2, at % 2)).map(|(i, j)| unit(4, &[(i, j, 1.0), (2 + j, 2 + i, -1.0)])).collect();
@@ -48,7 +48,7 @@ pub(super) fn sp4() -> Generators {
     list
 }
 
-/// Affine maps of `n` coordinates.
+/// The generators of the affine maps of `n` coordinates.
 pub(super) fn affine(n: usize) -> Generators {
     (0..n).flat_map(|i| (0..=n).map(move |j| unit(n + 1, &[(i, j, 1.0)]))).collect()
 }
@@ -67,7 +67,7 @@ pub(super) fn groups() -> Vec<(&'static str, Generators)> {
     built_in.map(|name| (name, named(name))).into_iter().chain(declared).collect()
 }
 
-/// A fraction of small numbers whose nearest `f64` is this.
+/// The fraction of small numbers with this nearest `f64`.
 #[allow(clippy::cast_possible_truncation)] // small numbers
 pub(super) fn rational(number: f64) -> Rational {
     let fractions = (1..=64_u32).map(|q| ((number * f64::from(q)).round() as i128, q));
@@ -111,7 +111,7 @@ impl<T: Number> Numbers<T> {
     }
 }
 
-/// A program of these values.
+/// A program with these values as outputs.
 pub(super) fn program(of: impl FnOnce(&mut Words) -> Vec<Symbol>) -> Program {
     let mut words = Words::default();
     let outputs = of(&mut words);

@@ -1,4 +1,5 @@
-//! Increments, inverses, coadjoint actions and the nine actions of any group, and what generators tell of it.
+//! Increments, inverses, coadjoint actions and the nine actions on parameters for any group, and the form that its
+//! generators imply.
 
 use std::slice::from_ref;
 
@@ -40,11 +41,11 @@ fn forms_are_those_of_the_generators() {
         ("affine", Form::General, Chart::Cayley),
     ];
     assert_eq!(forms, expected);
-    // Another basis of the rotations has no closed form here.
+    // The rotations in another basis than that of SO(3) have no closed form here.
     assert_eq!(form_of(&so(3)).0, Form::Orthogonal);
 }
 
-/// The relations of a group, as they are typed by hand.
+/// The relations of a group, typed by hand.
 fn is_in_group(name: &str, g: &Value<Residue>) -> bool {
     let n = g.rows;
     let one = Value::identity(n);
@@ -72,7 +73,8 @@ fn is_in_group(name: &str, g: &Value<Residue>) -> bool {
     }
 }
 
-/// By the first row of the inverse: `det = 1/C` of a cofactor `C` over that entry.
+/// The determinant by the first row of the inverse: `det = 1/C` of a cofactor `C` over that entry. `det = 1/C` of a
+/// cofactor `C` over that entry.
 fn determinant(g: &Value<Residue>) -> Residue {
     let n = g.rows;
     let minor = Value::new(n - 1, n - 1, |i, j| g.at(i + 1, j + 1));
@@ -80,7 +82,7 @@ fn determinant(g: &Value<Residue>) -> Residue {
     cofactor / g.inverse().at(0, 0)
 }
 
-/// From an element of the group, which steps have made, to another.
+/// A step from a random element of the group, that element, and the element after the step.
 fn moved(name: &str, generators: &Generators, seed: u64) -> (Moving<Residue>, Value<Residue>, Value<Residue>) {
     let mut next = Residue::stream(seed);
     let staged = declared(from_ref(generators), Vec::new());
@@ -137,7 +139,7 @@ fn momentum_is_carried_by_the_coadjoint_action() {
     }
 }
 
-/// Each action on parameters in space, seen from an attitude, and carried by an increment.
+/// Each action on parameters in space, in the body frame at an attitude, and after an increment.
 #[test]
 fn nine_actions() {
     for first in [affine(2), named("SE2"), named("Heisenberg"), named("R2")] {
@@ -191,7 +193,7 @@ fn are_as_by_hand(factors: &[Generators], has_points: bool) {
         assert!(are_equal(&at(&seen), &expected), "{action:?}");
         first += rows * columns;
     }
-    // After a step, all is as it is seen from the attitude there.
+    // The advected parameters after a step are those at the attitude after it.
     let moving = moving.with(Array::Advected, &seen);
     let state = moving.finished();
     let sizes = moving.step.sizes.clone();
@@ -199,7 +201,7 @@ fn are_as_by_hand(factors: &[Generators], has_points: bool) {
     assert_eq!(moving.numbers.run(&moving.step.programs.seen), state[sizes.advected()..sizes.history()]);
 }
 
-/// The defect vanishes in the group, and no entry of a matrix may be another.
+/// The defect vanishes in the group, and doesn't if any entry of a matrix is changed.
 #[test]
 fn the_defect_is_that_of_the_relations() {
     for (name, generators) in groups() {
@@ -209,7 +211,7 @@ fn the_defect_is_that_of_the_relations() {
         for at in 0..g.entries.len() {
             let mut other = g.entries.clone();
             other[at] = other[at] + Residue::ONE;
-            // All affine maps are in their group.
+            // Entries that are free in the group: all affine maps are in theirs.
             let is_free = name.contains("affine") && at / g.rows + 1 < g.rows || at % 4 == 3 && at < 12 && name == "R3";
             let is_free = is_free
                 || name == "Heisenberg" && [1, 2, 5].contains(&at)
@@ -228,7 +230,7 @@ fn is_translation(name: &str, at: usize) -> bool {
     at / n < rows && at % n >= rows
 }
 
-/// A reflection is orthogonal, too, and isn't in the group.
+/// A reflection is orthogonal, too, and has a defect.
 #[test]
 fn reflections_are_not_rotations() {
     for (name, generators) in groups().into_iter().filter(|(name, _)| name.starts_with("SO") || name.starts_with("SE"))
@@ -242,7 +244,7 @@ fn reflections_are_not_rotations() {
     }
 }
 
-/// A step of the polar decomposition, and of that of another form, squares the distance from the group.
+/// A step of the polar decomposition, and of that of another bilinear form, squares the distance from the group.
 #[test]
 fn attitudes_are_restored() {
     let mut restored = Vec::new();

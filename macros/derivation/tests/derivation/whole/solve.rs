@@ -9,7 +9,7 @@ use liestep_derivation::{Array, Program, Source, StagedDeclaration};
 
 use super::common::{Generators, Moving, affine, are_equal, declared, groups, named, run, sl3, so};
 
-/// `J u = r`, and the determinants are those of the blocks.
+/// Asserts that the solution satisfies `J u = r`, and that the determinants are those of the blocks.
 fn solves(name: &str, staged: &StagedDeclaration, is_zero: impl Fn(usize, usize) -> bool) {
     let mut next = Residue::stream(17);
     let moving = Moving::of(staged, &mut next);
@@ -33,7 +33,7 @@ fn solves(name: &str, staged: &StagedDeclaration, is_zero: impl Fn(usize, usize)
     };
     check(&found, &residual(&constants[..n]));
     assert_eq!(found.len(), n + 2 + 2 * dets + n * n, "{name}");
-    // With another residual and the old factors.
+    // A second solve has another residual and the old factors.
     let other: Vec<Residue> = (0..n).map(|_| next()).collect();
     let others = [other.as_slice(), &constants[n..]].concat();
     let again = moving.numbers.with(Array::Factors, &found[n + 2..]).with(Array::Constants, &others);
@@ -77,11 +77,11 @@ fn systems_of_several_factors() {
     apart(&three, &[3, 6]);
     apart(&three, &[6]);
     apart(&[named("SO2"), named("SE2"), so(4), named("R1")], &[1, 4]);
-    // A block of one component, of two and of four.
+    // Three blocks, of one, two and four components.
     apart(&[named("R1"), named("R2"), so(4)], &[1, 3]);
 }
 
-/// The residual `Σ c_ik D_k` of the entries of all `F − I`, and its derivative along `exp(t E_j) F`.
+/// A declaration with the residual `Σ c_ik D_k` of the entries of all `F − I`, and its derivative along `exp(t E_j) F`.
 fn of_increments(factors: &[Generators]) -> StagedDeclaration {
     let staged = declared(factors, Vec::new());
     let n: usize = factors.iter().map(Vec::len).sum();
@@ -166,13 +166,13 @@ fn tangents_are_derivatives() {
     is_linearised("a product", &[named("SO3"), sl3(), affine(2), named("R2")]);
 }
 
-/// The order of operations of a solve of three is the library's: the determinant by the first column.
+/// A solve of three components has the library's order of operations: the determinant by the first column.
 #[test]
 fn a_system_of_three_has_few_operations() {
     let staged = declared(&[named("SO3")], Vec::new());
     let count = |program: &Program| program.operations.len();
     let programs = Moving::of(&staged, Residue::stream(1)).step.programs;
-    // The residual of three rows of six; nine minors of three operations, the determinant of five; its reciprocal, three rows
-    // of six, and both squares of five.
+    // Counts of operations: the residual has three rows of six; nine minors have three operations each, and the
+    // determinant five; a solution has the reciprocal and three rows of six, and both squares five.
     assert_eq!((count(&programs.iterate), count(&programs.again)), (18 + 32 + 32, 18 + 32));
 }

@@ -105,7 +105,7 @@ fn free_bodies_keep_their_momentum_in_space_and_their_group() {
         assert!(size(&change) < 1e-13 * size(&before), "{name}: {change:?}");
         let body: Vec<f64> = states[0].iter().zip(&states[1]).map(|(a, b)| a - b).collect();
         assert!(size(&body[s.momentum()..s.advected()]) > 1e-3, "{name} is moving");
-        // The velocity of the momentum is the initial one, and the energy is that of its half.
+        // The velocity of the initial momentum is the initial velocity, and the energy is that of its half.
         let momentum = states[0][s.momentum()..s.advected()].to_vec();
         let numbers = numbers.with(Array::Momentum, &momentum).with(Array::Velocity, &velocity);
         let found = numbers.run(&step.programs.velocity);
@@ -136,7 +136,7 @@ fn the_heavy_top() {
     assert!((states[0][11] - states[1][11]).abs() > 1e-2, "it is moving");
 }
 
-/// A limit that isn't quadratic has its own momentum and energy.
+/// A limit that isn't quadratic has the relativistic momentum and energy.
 #[test]
 fn a_relativistic_particle() {
     let declaration = parsed(
@@ -171,13 +171,13 @@ fn refusals_say_what_to_write() {
         "#[lagrangian(group = SO3, advected(w = up), l_d = -h * m * w.dot(&rho))] struct Gravity { m: f64, rho: Vector3<f64>, up: Vector3<f64> }",
     );
     assert_eq!(refused(&gravity), StepRefusal::NoKinetic);
-    // The Cayley map of one nilpotent matrix of the fourth power has a cube.
+    // The Cayley map of a nilpotent matrix `N` with `N³ ≠ 0 = N⁴` leaves its one-dimensional group.
     let mut shift = vec![0.0; 16];
     (0..3).for_each(|i| shift[i * 4 + i + 1] = 1.0);
     assert_eq!(refused(&declared(&[vec![shift]], Vec::new())), StepRefusal::Cube { generator: 0 });
     let twice = vec![sl3()[0].clone(), sl3()[0].clone()];
     assert_eq!(refused(&declared(&[twice], Vec::new())), StepRefusal::Dependent);
-    // One of many dimensions, and one that carries many tensors.
+    // Declarations with too many operations: one of many dimensions, and one with many tensors.
     let tensors = carried(&[(Action::CovariantTensor(0), (4, 4)); 200]);
     for large in [declared(&[affine(8)], Vec::new()), declared(&[affine(3)], tensors)] {
         let refusal = refused(&large);
@@ -185,7 +185,7 @@ fn refusals_say_what_to_write() {
     }
 }
 
-/// A step is certified as it is written: an entry of the Jacobian in another place is noticed, as is a residual.
+/// A step whose Jacobian has two entries exchanged gets no certificate.
 #[test]
 fn what_is_wrong_is_refused() {
     for places in [[3, 4], [0, 1], [5, 9]] {
@@ -196,7 +196,7 @@ fn what_is_wrong_is_refused() {
     }
 }
 
-/// What a step costs: one more operation is a word to be looked for.
+/// Counts of the operations of a step, to be changed with care.
 #[test]
 fn operations_of_a_step() {
     let count = |program: &Program| program.operations.len();

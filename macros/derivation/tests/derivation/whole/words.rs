@@ -26,7 +26,7 @@ fn run(program: &Program, inputs: &[f64]) -> Vec<f64> {
     program.outputs.iter().map(|&at| values[at as usize]).collect()
 }
 
-/// A random program with many zeros, ones and negations, and the same through words.
+/// A random program with many zeros, ones and negations has the same bits after folding.
 #[test]
 fn folding_keeps_the_bits() {
     let mut random = Random::new(23);
@@ -50,7 +50,7 @@ fn folding_keeps_the_bits() {
         let outputs = words.append(&program, Value::Input);
         let folded = words.program(&outputs);
         assert!(folded.operations.len() < program.operations.len());
-        // Zeros of both signs are equal.
+        // The comparison takes zeros of both signs as equal.
         assert_eq!(run(&folded, &numbers), run(&program, &numbers));
         let mut words = Words::rounded(Function::apply);
         let outputs = words.append(&program, Value::Input);
@@ -80,7 +80,7 @@ fn zeros_ones_and_signs_are_left_out() {
     let product = words.multiply(x, y);
     let negative = words.multiply(minus, y);
     assert_eq!(words.negate(negative), product);
-    // A negation, a difference, a product and its negation.
+    // The operations are a negation, a difference, a product and its negation.
     assert_eq!(words.len(), 4);
     let program = words.program(&[difference]);
     assert_eq!((program.inputs.len(), program.operations.len()), (2, 1));

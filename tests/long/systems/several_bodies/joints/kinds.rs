@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, SVector, Vector3, Vector6};
 use super::super::apart;
 use super::{Body, Components, EPSILON, Free, Joined, assert_no_work, falling, jointed, place, rod, six, watched};
 
-/// Checks that slopes are the derivatives of gaps, for turns and shifts of either body.
+/// Checks that a constraint's slopes are the derivatives of its gaps, for turns and shifts of either body.
 fn check_slopes<C: Constraint<K>, const K: usize>(joint: &C, random: &mut Random) {
     let places: [Body; 2] = from_fn(|_| {
         let (xi, x): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
@@ -285,7 +285,7 @@ fn a_wheel_on_its_axle() {
 /// A joint with dependent functions is named at the start; an attitude off the group is refused, too.
 #[test]
 fn a_joint_that_repeats_itself() {
-    /// The height of a point, twice, and then perhaps a function whose slope is zero.
+    /// A constraint with the height of a point, twice, and then perhaps a function whose slope is zero.
     #[derive(Clone, Copy, Debug, PartialEq)]
     struct Heights([f64; 2]);
     impl Constraint<2> for Heights {
@@ -325,7 +325,7 @@ fn a_joint_that_repeats_itself() {
     }
 }
 
-/// The names and numbers of a description.
+/// A visitor that collects the names and numbers of a description.
 #[derive(Default)]
 struct Description(Vec<String>);
 

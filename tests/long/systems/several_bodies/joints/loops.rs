@@ -223,7 +223,7 @@ fn a_singular_position_names_the_joint() {
     println!("{refused}");
     assert!(matches!(refused, SetupError::RedundantJoint { joint: 2, .. }));
     assert!(matches!(stepper.start_nearest(&straight, &still), Err(SetupError::RedundantJoint { joint: 2, .. })));
-    // The state starts elsewhere and is adopted.
+    // The motion starts in another configuration, and is adopted here.
     let bent = of(1.9);
     let tilt = 0.95_f64.acos();
     let about = [1.0, -1.0].map(|side| {

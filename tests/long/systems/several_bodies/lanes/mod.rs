@@ -264,7 +264,7 @@ fn each_lane_of_a_group_that_is_inverted_is_one() {
     assert!(matches!(Stepper::new(Floating { K }, 0.01), Err(SetupError::SingularKinetic { body: None, .. })));
 }
 
-/// A rotating body.
+/// A rotating body whose step has no solution about its third axis beyond a right angle.
 #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Turning<T> {
@@ -289,7 +289,7 @@ fn each_lane_of_a_row_of_bodies_is_one() {
         let turning = Each::<N>::of([0, 1, 2, 3].map(|_| Turning { J_d: inertia::<f64>(random) }));
         let tied = [0, 1, 2].map(|_| Alike { kappa: 2.0 + vector(random).x });
         let weight = Heavy { weight: 2.0 + vector(random).x, rho: vector(random) * 0.3, up: Vector3::z() };
-        // The first has a second inertia.
+        // The first body has a second inertia.
         let scene = On::<0, N>::of([Turning { J_d: inertia::<f64>(random) }])
             + turning
             + Along::<N>::of(tied)

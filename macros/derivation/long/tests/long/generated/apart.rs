@@ -1,4 +1,4 @@
-//! The value of Rust text, and of what bodies see, by their definitions.
+//! Evaluation of Rust text, and of relative configurations, by their definitions.
 
 use std::collections::BTreeMap;
 
@@ -10,10 +10,10 @@ use crate::common::random::exponential;
 use liestep_derivation::declared::Declaration;
 use liestep_derivation::mathematics::derive::View;
 
-/// Values of names; the inverse of each increment is named after it.
+/// Values of names, in which the inverse of each increment has a name made from that of the increment.
 pub(super) type Env = BTreeMap<String, Matrix>;
 
-/// With another value.
+/// The values with that of one name replaced.
 pub(super) fn with(env: &Env, name: &str, value: Matrix) -> Env {
     let mut env = env.clone();
     env.insert(name.to_owned(), value);
@@ -24,7 +24,7 @@ pub(super) fn inverse_of(name: &str) -> String {
     format!("inverse of {name}")
 }
 
-/// Nothing where the text has no meaning.
+/// The value of an expression; none if the text has no meaning.
 pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
     let of = |expression: &Expr| value(expression, env);
     let number = |x: &Matrix| (x.entries.len() == 1).then(|| x.at(0, 0));
@@ -55,7 +55,7 @@ pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
             }
             return None;
         }
-        // Of a constraint, one below the other.
+        // The functions of a constraint are stacked into one column.
         Expr::Tuple(parts) => {
             let parts: Option<Vec<Matrix>> = parts.elems.iter().map(of).collect();
             let entries: Vec<f64> = parts?.into_iter().flat_map(|part| part.entries).collect();
@@ -103,14 +103,14 @@ pub(super) fn value(expression: &Expr, env: &Env) -> Option<Matrix> {
     })
 }
 
-/// Of a rotation, `(θ/sin θ) vee(R)`; a matrix whose trace no rotation has has none.
+/// The logarithm of a rotation, `(θ/sin θ) vee(R)`; none if the trace is that of no rotation.
 fn logarithm(rotation: &Matrix) -> Matrix {
     let cosine = 0.5 * (rotation.trace() - 1.0);
     let angle = if (cosine - 1.0).abs() < 1e-12 { 0.0 } else { cosine.acos() };
     rotation.vee().scaled(if angle == 0.0 { 1.0 } else { angle / angle.sin() })
 }
 
-/// Of an increment its own; of a field with three rows by their vector products.
+/// The inverse of an increment by its name; of a field with three rows by vector products of its columns.
 fn inverse(argument: &Expr, env: &Env) -> Option<Matrix> {
     let Expr::Path(name) = argument else { return None };
     let name = name.path.get_ident()?.to_string();
@@ -132,7 +132,7 @@ fn exp(x: &Matrix) -> Matrix {
     (1..25).fold((Matrix::identity(x.rows), Matrix::identity(x.rows)), next).0
 }
 
-/// A change of a body: an element of its algebra, or a vector of what is translated.
+/// A change of a body: an element of its algebra, or a displacement of a translated one.
 #[derive(Clone)]
 pub(super) struct Change<'a> {
     pub(super) declaration: &'a Declaration,
@@ -153,7 +153,8 @@ impl Change<'_> {
         Self { along: self.along.scaled(size), ..self.clone() }
     }
 
-    /// With `exp(x) F` for `F`, or on the right side of it; or `d + x`.
+    /// The values with `exp(x) F` in the place of `F`, or with `x` on the right side of `F`; for a translation with
+    /// `d + x`.
     pub(super) fn turned(&self, env: &Env, is_right: bool) -> Env {
         let (name, of_inverse) = (self.name(), inverse_of(self.name()));
         if self.is_added() {
@@ -169,7 +170,7 @@ impl Change<'_> {
         with(&with(env, name, f), &of_inverse, inverse)
     }
 
-    /// With all that is advected moved by `exp(x)`.
+    /// The values with all advected parameters moved by `exp(x)`.
     pub(super) fn carried(&self, env: &Env) -> Env {
         let elements = [1.0, -1.0].map(|sign| self.along.scaled(sign));
         let elements = if self.is_added() { elements } else { elements.map(|x| exp(&x)) };
@@ -177,7 +178,8 @@ impl Change<'_> {
     }
 }
 
-/// With all that is advected moved by an element of a factor, given with its inverse; a plain vector is a covector.
+/// The values with all advected parameters moved by an element of a factor, passed with its inverse; a plain vector is
+/// a covector.
 pub(super) fn carried(declaration: &Declaration, factor: usize, [g, inverse]: [&Matrix; 2], env: &Env) -> Env {
     let (mut moved, is_added) = (env.clone(), declaration.group.factor(factor).is_added);
     for w in declaration.advected.iter().filter(|w| !w.is_given) {
@@ -196,10 +198,10 @@ pub(super) fn carried(declaration: &Declaration, factor: usize, [g, inverse]: [&
     moved
 }
 
-/// By a formula of fourth order.
+/// The derivative at zero by a difference formula of fourth order.
 pub(super) fn slope(f: impl Fn(f64) -> Option<f64>) -> Option<f64> {
     let difference = |e: f64| Some((f(e)? - f(-e)?) / (2.0 * e));
     let [near, far] = [difference(5e-4)?, difference(1e-3)?];
-    // Beside a root's zero neither is good enough.
+    // Neither difference is accurate near the zero of a root.
     ((near - far).abs() <= 1e-4 * (1.0 + near.abs())).then_some((4.0 * near - far) / 3.0)
 }

@@ -1,17 +1,17 @@
-//! Declarations at random, as text.
+//! Random declarations, as text.
 
 use crate::common::random::Random;
 use liestep_derivation::declared::Role;
 
 pub(super) struct Kind {
     pub(super) role: Role,
-    /// Before the expression, its beginning, of which there may be several, and what comes behind it.
+    /// The arguments before the expression, the possible first terms of it, and the arguments behind it.
     pub(super) head: &'static str,
     beginnings: &'static [&'static str],
     pub(super) tail: &'static str,
-    /// What a term is multiplied by.
+    /// The factor of a term, as `h * ` for a potential.
     weight: &'static str,
-    /// Vectors that move, the first in each term, and scalars that do.
+    /// Vectors that depend on the motion, the first of which is in each term, and scalars that depend on it.
     vectors: &'static [&'static str],
     scalars: &'static [&'static str],
 }
@@ -35,7 +35,7 @@ pub(super) const KINDS: [Kind; 12] = [
         beginnings: &["0.5 * log(F).dot(&(J * log(F))) / h - h * u.dot(&(F * w))"],
         ..PLAIN
     },
-    // Of small increments, as there are roots.
+    // A kind whose increments are small, as its terms have roots.
     Kind {
         beginnings: &[
             "-(h * h - ((F - I) * J * (F - I).transpose()).trace()).sqrt()",
@@ -138,7 +138,7 @@ const FIELDS: [(&str, &str); 8] = [
     ("J", "NonstandardInertia<f64>"), ("A", "Matrix3<f64>"), ("a", "Vector3<f64>"), ("b", "Vector3<f64>"),
     ("up", "Vector3<f64>"), ("wind", "Vector3<f64>"), ("k", "f64"), ("m", "f64"),
 ];
-/// What is wrong, wherever it stands for the other.
+/// Replacements that make a declaration wrong.
 #[rustfmt::skip]
 pub(super) const MISTAKES: [(&str, &str); 32] = [
     (" - h * ", " - "), (" - h * ", " - h * h * "), (".dot(&", ".dot("), ("2.0 * h", "2 * h"), ("* J *", "* K *"),
@@ -151,7 +151,7 @@ pub(super) const MISTAKES: [(&str, &str); 32] = [
     ("(R_1 * a)", "(R_1.transpose() * a)"), ("zero = ", "zero = 0.0 * "), ("log(Q)", "log(w)"), ("y * y", "y.z * y"),
 ];
 
-/// What is written for something else.
+/// Tokens that replace other ones at random.
 pub(super) const WORDS: [&str; 14] = ["F", "w", "a", "b", "k", "h", "+", "-", "*", "I", "J", "2.0", "( F * a )", "/"];
 
 fn vector(random: &mut Random, kind: &Kind, depth: usize) -> String {
@@ -181,7 +181,7 @@ fn scalar(random: &mut Random, kind: &Kind, depth: usize) -> String {
     }
 }
 
-/// A sum whose terms have summands that are no other's negative, so that few are zero.
+/// A sum of terms, of which none has two opposite summands, so that few are zero.
 pub(super) fn right(random: &mut Random, kind: &Kind) -> String {
     let (weight, moving) = (kind.weight, kind.vectors[0]);
     let mut terms = vec![kind.beginnings[random.below(kind.beginnings.len())].to_owned()];
@@ -196,7 +196,7 @@ pub(super) fn right(random: &mut Random, kind: &Kind) -> String {
     let with_name =
         [sum.replace(&format!("{moving}.dot(&a)"), &format!("{moving}.dot(&(a + q))")), sum.replace(" + w)", " + q)")];
     match random.below(3) {
-        // A statement that begins with a block ends with it.
+        // The sum stands in parentheses: a block at its beginning would end the statement.
         0 => {
             format!("{{ let q = {}; ({}) }}", vector(random, kind, 1), with_name[usize::from(kind.role == Role::Force)])
         }
@@ -213,7 +213,7 @@ pub(crate) fn on_a_product(seed: u64) -> (String, String) {
     declaration(kind, &right(&mut random, kind))
 }
 
-/// With the fields that stand in it.
+/// The arguments and the struct of a declaration, with the fields that occur in the arguments.
 pub(super) fn declaration(kind: &Kind, expression: &str) -> (String, String) {
     let arguments = format!("{}{expression}{}", kind.head, kind.tail);
     let words: Vec<&str> = arguments.split(|letter: char| !letter.is_alphanumeric() && letter != '_').collect();
