@@ -44,7 +44,7 @@ const BEGINNINGS: [usize; 3] = [100, 250, 500];
 
 /// A scene with a body in its principal axes.
 type Top = Sum<PrincipalBody, Gravity>;
-type TopFit = Fit<Top, Composition<Top>>;
+type TopFit = Fit<Stepper<Top, Composition<Top>>>;
 
 const HELP: &str = "Fits the inertia of a top to the readings of a gyroscope
 

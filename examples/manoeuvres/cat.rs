@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use liestep::gradients::Input;
 use liestep::groups::{Factor, LieGroup, R1};
-use liestep::motion::OwnStep;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep_control::{Control, ControlPlan, Target};
 use nalgebra::{SVector, UnitQuaternion, Vector3};
@@ -30,7 +29,7 @@ pub(crate) struct Cat {
 }
 
 type Attitude = (SO3, R1, R1);
-type Turn = ControlPlan<Cat, OwnStep<Cat>>;
+type Turn = ControlPlan<Stepper<Cat>>;
 
 const MOMENTS: [f64; 3] = [0.7, 0.5, 0.9];
 const WHEEL: f64 = 0.3;

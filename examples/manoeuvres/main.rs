@@ -77,11 +77,7 @@ fn main() -> ExitCode {
 }
 
 /// A summary of a plan's search, or the reason for its failure.
-fn found<S, P>(plan: &ControlPlan<S, P>) -> Result<String, Failure>
-where
-    S: liestep::mechanics::SecondDerivatives,
-    P: liestep::motion::Plan<S>,
-{
+fn found<M: liestep::gradients::Plant>(plan: &ControlPlan<M>) -> Result<String, Failure> {
     match plan.verdict {
         Verdict::Converged => Ok(format!(
             "{} steps, {} iterations, residual {:.0e}",

@@ -3,9 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use liestep::effects::{Gravity, RigidBody};
-use liestep::gradients::Input;
-use liestep::mechanics::SecondDerivatives;
-use liestep::motion::Plan;
+use liestep::gradients::Plant;
 use liestep::{NonstandardInertia, SO3, Stepper};
 use liestep_control::{Control, ControlPlan, Cost, Target};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -19,25 +17,17 @@ fn turned(angles: [f64; 3]) -> SO3 {
 }
 
 /// The torques of a plan, N m.
-fn torques<S, P>(plan: &ControlPlan<S, P>) -> Vec<[f64; 3]>
-where
-    S: SecondDerivatives<Scalar = f64, Group = SO3>,
-    P: Plan<S>,
-{
-    let scalars = |input: &Input<Vector3<f64>, S::Advected>| {
-        let scalars: Vec<f64> = input.scalars();
+fn torques<M: Plant>(plan: &ControlPlan<M>) -> Vec<[f64; 3]> {
+    let scalars = |input| {
+        let scalars = M::numbers(input);
         [scalars[0], scalars[1], scalars[2]]
     };
     plan.inputs.iter().map(scalars).collect()
 }
 
 /// The directions of a body vector during the manoeuvre.
-fn pointed<S, P>(plan: &ControlPlan<S, P>, vector: Vector3<f64>) -> Vec<Vector3<f64>>
-where
-    S: SecondDerivatives<Scalar = f64, Group = SO3>,
-    P: Plan<S>,
-{
-    plan.states.iter().map(|state| state.attitude().as_matrix() * vector).collect()
+fn pointed<M: Plant<Attitude = SO3>>(plan: &ControlPlan<M>, vector: Vector3<f64>) -> Vec<Vector3<f64>> {
+    plan.states.iter().map(|state| plan.stepper.attitude(state).as_matrix() * vector).collect()
 }
 
 /// The torques of a plan over time.

@@ -1,9 +1,7 @@
 //! The task of optimal control: start, target, inputs, bounds and cost.
 
-use liestep::gradients::{Input, InputOf, Linearisable};
-use liestep::groups::{ExponentialRetraction, LieGroup, Retraction};
-use liestep::mechanics::{Group, SecondDerivatives, Term, Vector};
-use liestep::motion::{Motion, Plan, StateOf, Stepper};
+use liestep::gradients::Plant;
+use liestep::groups::LieGroup;
 use liestep::numbers::Coordinates as _;
 use nalgebra::DVector;
 
@@ -35,51 +33,41 @@ pub struct Cost {
 }
 
 /// A constrained value of the state after this number of steps.
-pub(crate) type Value<'a, S> = dyn Fn(usize, &Motion<Group<S>, <S as Term>::Advected>) -> f64 + 'a;
+pub(crate) type Value<'a, M> = dyn Fn(usize, &<M as Plant>::Motion) -> f64 + 'a;
 
 /// An observer of iterations, which returns whether to go on.
 type Watch<'a> = dyn Fn(usize, &Residual) -> bool + 'a;
 
 #[doc = include_str!("control.md")]
-pub struct Control<'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
-    pub(crate) stepper: &'a Stepper<S, P>,
-    pub(crate) start: StateOf<S, P>,
+pub struct Control<'a, M: Plant> {
+    pub(crate) stepper: &'a M,
+    pub(crate) start: M::State,
     pub(crate) steps: usize,
-    pub(crate) target: Target<Group<S>, Vector<S>>,
+    pub(crate) target: Target<M::Attitude, M::Vector>,
     pub(crate) cost: Cost,
-    pub(crate) like: InputOf<S>,
+    pub(crate) like: M::Input,
     pub(crate) places: Vec<usize>,
     pub(crate) bounds: Box<dyn Fn(usize, usize) -> (f64, f64) + 'a>,
     pub(crate) guess: Box<dyn Fn(usize, usize) -> f64 + 'a>,
-    pub(crate) kept: Vec<Box<Value<'a, S>>>,
+    pub(crate) kept: Vec<Box<Value<'a, M>>>,
     pub(crate) progress: Box<Watch<'a>>,
     pub(crate) tolerance: f64,
     pub(crate) most: usize,
 }
 
-impl<'a, S, P> Control<'a, S, P>
-where
-    S: SecondDerivatives<Scalar = f64> + Clone,
-    P: Linearisable<S> + Clone,
-    ExponentialRetraction: Retraction<Group<S>>,
-{
+impl<'a, M: Plant> Control<'a, M> {
     /// The task to reach the target from this state, in this number of steps, by the least effort, with a control force
     /// without bounds: on SO(3) a torque about each axis of the body, N m.
     #[must_use]
-    pub fn new(
-        stepper: &'a Stepper<S, P>,
-        start: StateOf<S, P>,
-        steps: usize,
-        target: Target<Group<S>, Vector<S>>,
-    ) -> Self {
+    pub fn new(stepper: &'a M, start: M::State, steps: usize, target: Target<M::Attitude, M::Vector>) -> Self {
         Self {
             stepper,
             start,
             steps,
             target,
             cost: Cost { time: 0.0, effort: 1.0 },
-            like: Input::Force(Vector::<S>::zero()),
-            places: (0..Group::<S>::DIMENSION).collect(),
+            like: stepper.force(),
+            places: (0..stepper.dimension()).collect(),
             bounds: Box::new(|_, _| (f64::NEG_INFINITY, f64::INFINITY)),
             guess: Box::new(|_, _| 0.0),
             kept: Vec::new(),
@@ -90,9 +78,9 @@ where
     }
 
     /// Selects the inputs of each step: the scalars in these places of an input like this one, each once, in the order
-    /// of [`Input::scalars`]; the others stay as they are.
+    /// of [`Input::scalars`](liestep::gradients::Input::scalars); the others stay as they are.
     #[must_use]
-    pub fn input(self, like: InputOf<S>, places: impl IntoIterator<Item = usize>) -> Self {
+    pub fn input(self, like: M::Input, places: impl IntoIterator<Item = usize>) -> Self {
         Self { like, places: places.into_iter().collect(), ..self }
     }
 
@@ -109,7 +97,7 @@ where
     /// Its derivatives are differences of fourth order, so it has to be smooth: the cosine of an angle rather than the
     /// angle.
     #[must_use]
-    pub fn keep(mut self, value: impl Fn(usize, &Motion<Group<S>, S::Advected>) -> f64 + 'a) -> Self {
+    pub fn keep(mut self, value: impl Fn(usize, &M::Motion) -> f64 + 'a) -> Self {
         self.kept.push(Box::new(value));
         self
     }

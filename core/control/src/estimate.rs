@@ -1,12 +1,9 @@
 //! Estimates of a motion from its readings.
 
-use liestep::gradients::{Input, InputOf, Linearisable};
-use liestep::groups::{ExponentialRetraction, LieGroup as _, Retraction};
-use liestep::mechanics::{Group, SecondDerivatives, Term};
-use liestep::motion::{Motion, Plan, StateOf, Stepper};
+use liestep::gradients::Plant;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use crate::model::{Model, SMALL, by_displacement, displaced, flat};
+use crate::model::{Model, SMALL, away, by_displacement, displaced};
 use crate::riccati::{End, Stage, Value, add_square, of_state};
 use crate::verdict::{ControlError, Verdict};
 
@@ -16,20 +13,20 @@ const UNSEEN: f64 = 1e-13;
 const MOST_DAMPING: f64 = 1e8;
 
 /// The residuals of a state's readings, by the number of steps before it and the constants.
-type Readings<'a, S> = dyn Fn(usize, &Motion<Group<S>, <S as Term>::Advected>, &[f64]) -> Vec<f64> + 'a;
+type Readings<'a, M> = dyn Fn(usize, &<M as Plant>::Motion, &[f64]) -> Vec<f64> + 'a;
 /// The stepper as a function of the constants.
-type StepperOf<'a, S, P> = dyn Fn(&[f64]) -> Option<Stepper<S, P>> + 'a;
+type StepperOf<'a, M> = dyn Fn(&[f64]) -> Option<M> + 'a;
 
 #[doc = include_str!("estimate.md")]
-pub struct Estimate<'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
-    stepper: &'a Stepper<S, P>,
-    start: StateOf<S, P>,
+pub struct Estimate<'a, M: Plant> {
+    stepper: &'a M,
+    start: M::State,
     steps: usize,
-    readings: Box<Readings<'a, S>>,
+    readings: Box<Readings<'a, M>>,
     constants: Vec<f64>,
     scales: Vec<f64>,
-    stepper_of: Option<Box<StepperOf<'a, S, P>>>,
-    like: InputOf<S>,
+    stepper_of: Option<Box<StepperOf<'a, M>>>,
+    like: M::Input,
     places: Vec<usize>,
     deviations: Vec<f64>,
     known: DMatrix<f64>,
@@ -39,13 +36,13 @@ pub struct Estimate<'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
 
 /// The motion that suits the readings best.
 #[derive(Clone, Debug)]
-pub struct Fit<S: SecondDerivatives, P: Plan<S>> {
+pub struct Fit<M: Plant> {
     /// The stepper with the fitted constants.
-    pub stepper: Stepper<S, P>,
+    pub stepper: M,
     /// The states, one more than there are steps.
-    pub states: Vec<StateOf<S, P>>,
+    pub states: Vec<M::State>,
     /// The input of each step.
-    pub inputs: Vec<InputOf<S>>,
+    pub inputs: Vec<M::Input>,
     /// The fitted constants.
     pub constants: Vec<f64>,
     /// The covariance of displacements of the start, its momentum and the constants, of `2n + c` rows for a group of
@@ -62,9 +59,9 @@ pub struct Fit<S: SecondDerivatives, P: Plan<S>> {
 }
 
 /// A motion, and its residuals from the readings.
-struct Trial<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
-    model: Model<S, P>,
-    states: Vec<StateOf<S, P>>,
+struct Trial<M: Plant> {
+    model: Model<M>,
+    states: Vec<M::State>,
     inputs: Vec<DVector<f64>>,
     constants: DVector<f64>,
     /// One vector for each state.
@@ -74,12 +71,7 @@ struct Trial<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     squares: f64,
 }
 
-impl<'a, S, P> Estimate<'a, S, P>
-where
-    S: SecondDerivatives<Scalar = f64> + Clone,
-    P: Linearisable<S> + Clone,
-    ExponentialRetraction: Retraction<Group<S>>,
-{
+impl<'a, M: Plant> Estimate<'a, M> {
     /// The estimate of a motion of this number of steps, from near this state. For the state after each number of
     /// steps, from zero on, `readings` returns predicted minus measured values in standard deviations; it gets the
     /// constants, too.
@@ -87,12 +79,12 @@ where
     /// Derivatives of the readings are differences of fourth order.
     #[must_use]
     pub fn new(
-        stepper: &'a Stepper<S, P>,
-        start: StateOf<S, P>,
+        stepper: &'a M,
+        start: M::State,
         steps: usize,
-        readings: impl Fn(usize, &Motion<Group<S>, S::Advected>, &[f64]) -> Vec<f64> + 'a,
+        readings: impl Fn(usize, &M::Motion, &[f64]) -> Vec<f64> + 'a,
     ) -> Self {
-        let states = 2 * Group::<S>::DIMENSION;
+        let states = 2 * stepper.dimension();
         Self {
             stepper,
             start,
@@ -101,7 +93,7 @@ where
             constants: Vec::new(),
             scales: Vec::new(),
             stepper_of: None,
-            like: Input::Free,
+            like: stepper.free(),
             places: Vec::new(),
             deviations: Vec::new(),
             known: DMatrix::zeros(states, states),
@@ -113,20 +105,20 @@ where
     /// Adds unknown constants: their first guesses, and changes of them that make a difference.
     #[must_use]
     pub fn unknowns(self, guesses: Vec<f64>, scales: Vec<f64>) -> Self {
-        let states = 2 * Group::<S>::DIMENSION + guesses.len();
+        let states = 2 * self.stepper.dimension() + guesses.len();
         Self { constants: guesses, scales, known: DMatrix::zeros(states, states), ..self }
     }
 
     /// Sets the stepper as a function of the constants, with the same step; without it they act on the readings alone.
     #[must_use]
-    pub fn steppers(self, of: impl Fn(&[f64]) -> Option<Stepper<S, P>> + 'a) -> Self {
+    pub fn steppers(self, of: impl Fn(&[f64]) -> Option<M> + 'a) -> Self {
         Self { stepper_of: Some(Box::new(of)), ..self }
     }
 
     /// Adds unknown inputs of each step: as [`Control::input`](crate::Control::input), about the scalars of `like` with
     /// these standard deviations, one for each place.
     #[must_use]
-    pub fn inputs(self, like: InputOf<S>, places: Vec<usize>, deviations: Vec<f64>) -> Self {
+    pub fn inputs(self, like: M::Input, places: Vec<usize>, deviations: Vec<f64>) -> Self {
         Self { like, places, deviations, ..self }
     }
 
@@ -148,9 +140,9 @@ where
     /// # Errors
     ///
     /// [`ControlError`] if the search can't start.
-    pub fn solve(&self) -> Result<Fit<S, P>, ControlError> {
-        self.stepper.linearised()?;
-        let (scalars, states) = (self.like.scalars::<f64>().len(), 2 * Group::<S>::DIMENSION + self.constants.len());
+    pub fn solve(&self) -> Result<Fit<M>, ControlError> {
+        self.stepper.check()?;
+        let (scalars, states) = (M::numbers(&self.like).len(), 2 * self.stepper.dimension() + self.constants.len());
         let is_size = |size: &f64| *size > 0.0 && size.is_finite();
         let are_places = self.places.iter().all(|place| *place < scalars) && self.places.len() == self.deviations.len();
         let checks = [
@@ -164,7 +156,7 @@ where
         }
         let inputs = vec![self.given(); self.steps];
         let mut trial = self
-            .trial(self.start, inputs, DVector::from_column_slice(&self.constants))
+            .trial(self.start.clone(), inputs, DVector::from_column_slice(&self.constants))
             .map_err(|(step, error)| ControlError::Step(step, error))?
             .ok_or(ControlError::Unusable("reading"))?;
         let (mut damping, mut iterations) = (0.0, 0);
@@ -193,11 +185,11 @@ where
 
     /// The expected input.
     fn given(&self) -> DVector<f64> {
-        let scalars = self.like.scalars::<f64>();
+        let scalars = M::numbers(&self.like);
         DVector::from_iterator(self.places.len(), self.places.iter().map(|place| scalars[*place]))
     }
 
-    fn model(&self, constants: &DVector<f64>) -> Option<Model<S, P>> {
+    fn model(&self, constants: &DVector<f64>) -> Option<Model<M>> {
         let (mut stepper, mut beside) = (self.stepper.clone(), Vec::new());
         if let Some(of) = &self.stepper_of {
             stepper = of(constants.as_slice())?;
@@ -213,26 +205,24 @@ where
         }
         #[allow(clippy::cast_precision_loss)] // exact up to 2⁵³
         let duration = stepper.step_size() * self.steps as f64;
-        let (like, places) = (self.like, self.places.clone());
+        let (like, places) = (self.like.clone(), self.places.clone());
         Some(Model { duration, stepper, constants: constants.len(), beside, like, places })
     }
 
     /// The trial of these unknowns, if stepper, coordinates and finite squares exist there.
     fn trial(
         &self,
-        start: StateOf<S, P>,
+        start: M::State,
         inputs: Vec<DVector<f64>>,
         constants: DVector<f64>,
-    ) -> Result<Option<Trial<S, P>>, (usize, liestep::StepError)> {
+    ) -> Result<Option<Trial<M>>, (usize, liestep::StepError)> {
         let Some(model) = self.model(&constants) else { return Ok(None) };
         let states = model.run(&start, &inputs)?;
-        let read = |(step, state): (usize, &StateOf<S, P>)| {
-            DVector::from_vec((self.readings)(step, state, constants.as_slice()))
+        let read = |(step, state): (usize, &M::State)| {
+            DVector::from_vec((self.readings)(step, M::motion(state), constants.as_slice()))
         };
         let readings: Vec<_> = states.iter().enumerate().map(read).collect();
-        let turn = self.start.attitude().inverse().compose(&start.attitude());
-        let Some(turn) = ExponentialRetraction::local_coordinates(&turn) else { return Ok(None) };
-        let away = flat([&turn, &(start.momentum() - self.start.momentum())]);
+        let Some(away) = away(&model.stepper, &self.start, &start) else { return Ok(None) };
         let away = DVector::from_iterator(
             model.states(),
             away.iter().copied().chain(constants.iter().zip(&self.constants).map(|(now, guess)| now - guess)),
@@ -249,10 +239,10 @@ where
     }
 
     /// The Gauss–Newton programme, and its least cost as a function of the start.
-    fn value(&self, trial: &Trial<S, P>) -> Option<(Vec<Stage>, Value)> {
+    fn value(&self, trial: &Trial<M>) -> Option<(Vec<Stage>, Value)> {
         let Trial { model, states, inputs, constants, readings, away, .. } = trial;
         let (count, deviations, given) = (model.states(), self.deviations(), self.given());
-        let stage = |(state, input): (&StateOf<S, P>, &DVector<f64>)| {
+        let stage = |(state, input): (&M::State, &DVector<f64>)| {
             let mut stage = model.blocks(state, input).ok()?;
             let by_input = deviations.map(|deviation| deviation.powi(-2));
             stage.input_gradient = (input - &given).component_mul(&by_input);
@@ -269,9 +259,9 @@ where
             gradient: DVector::zeros(count),
         };
         for (step, (state, reading)) in states.iter().zip(readings).enumerate() {
-            let values = |state: &StateOf<S, P>, change: &[f64]| {
+            let values = |state: &M::State, change: &[f64]| {
                 let constants: Vec<f64> = constants.iter().zip(change).map(|(now, change)| now + change).collect();
-                (self.readings)(step, state, &constants)
+                (self.readings)(step, M::motion(state), &constants)
             };
             let slopes = model.slopes(state, &stages[step.min(self.steps - 1)], &self.scales, values)?;
             let (hessian, gradient) = of_state(&mut stages, &mut end, step);
@@ -281,10 +271,10 @@ where
                 gradient.axpy(*reading, &slope, 1.0);
             }
         }
-        let dimension = Group::<S>::DIMENSION;
-        let turn = self.start.attitude().inverse().compose(&states[0].attitude());
+        let dimension = self.stepper.dimension();
+        let slopes = by_displacement(self.stepper, &self.stepper.attitude(&self.start), &states[0])?;
         let mut known = DMatrix::identity(count, count);
-        known.view_mut((0, 0), (dimension, dimension)).copy_from(&by_displacement::<Group<S>>(&turn)?);
+        known.view_mut((0, 0), (dimension, dimension)).copy_from(&slopes);
         let (hessian, gradient) = of_state(&mut stages, &mut end, 0);
         let mut hessian = hessian.view_mut((0, 0), (count, count));
         hessian += known.tr_mul(&(&self.known * &known));
@@ -296,11 +286,11 @@ where
     /// A motion with smaller squares: the longest Levenberg–Marquardt step that leads to one.
     fn improve(
         &self,
-        trial: &Trial<S, P>,
+        trial: &Trial<M>,
         stages: &[Stage],
         (value, seen): (&Value, &Directions),
         damping: &mut f64,
-    ) -> Option<Trial<S, P>> {
+    ) -> Option<Trial<M>> {
         // At the level of rounding the step is taken without a decrease.
         let rounding = 1e-13 * (1.0 + trial.squares);
         while *damping < MOST_DAMPING {

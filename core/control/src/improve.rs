@@ -1,10 +1,7 @@
 //! A step of the search: its direction by the quadratic programme, its length by a line search.
 
 use liestep::StepError;
-use liestep::gradients::Linearisable;
-use liestep::groups::{ExponentialRetraction, Retraction};
-use liestep::mechanics::{Group, SecondDerivatives};
-use liestep::motion::StateOf;
+use liestep::gradients::Plant;
 use nalgebra::DVector;
 
 use crate::model::Model;
@@ -27,12 +24,7 @@ const NEAR: f64 = 1e-4;
 const CONVEX: [(f64, f64); 7] =
     [(0.0, 0.0), (10.0, 0.0), (1e3, 0.0), (1e3, 1.0), (1e3, 10.0), (1e3, 100.0), (1e3, 1e4)];
 
-impl<S, P> Search<'_, '_, S, P>
-where
-    S: SecondDerivatives<Scalar = f64> + Clone,
-    P: Linearisable<S> + Clone,
-    ExponentialRetraction: Retraction<Group<S>>,
-{
+impl<M: Plant> Search<'_, '_, M> {
     /// Makes a step that is better by the merit `cost + barrier + penalty · |miss|`; the error has the step of the
     /// motion that failed, if one did.
     pub(crate) fn improve(
@@ -163,7 +155,7 @@ where
         let broken = self.course.broken().filter(|_| self.is_nearest);
         for (place, weight) in of_sides.chain(broken) {
             let (step, number) = (1 + place / self.control.kept.len(), place % self.control.kept.len());
-            let value = |state: &StateOf<S, P>| self.control.kept[number](step, state);
+            let value = |state: &M::State| self.control.kept[number](step, M::motion(state));
             let curvature = model.curvature(&states[step], &stages[step - 1], value)?;
             let mut hessian = of_state(stages, &mut end, step).0.view_mut((0, 0), curvature.shape());
             hessian += curvature * weight;
@@ -203,7 +195,7 @@ where
         solution: &Solution,
         changes: &[(f64, f64)],
         share: f64,
-    ) -> Result<Option<Course<S, P>>, (usize, StepError)> {
+    ) -> Result<Option<Course<M>>, (usize, StepError)> {
         let change = |(now, change): (&DVector<f64>, &DVector<f64>)| now + change * share;
         let inputs: Vec<DVector<f64>> = self.course.inputs.iter().zip(&solution.inputs).map(change).collect();
         let duration = self.course.model.duration + solution.states[0].sum() * share;
@@ -220,7 +212,7 @@ where
     }
 
     /// The distance of a course from the target and from the constraints.
-    pub(crate) fn distance(&self, course: &Course<S, P>) -> f64 {
+    pub(crate) fn distance(&self, course: &Course<M>) -> f64 {
         let squares: f64 = if self.is_nearest {
             course.broken().map(|(_, value)| value * value).sum()
         } else {
@@ -229,7 +221,7 @@ where
         (course.miss.norm_squared() + squares).sqrt()
     }
 
-    fn merit(&self, course: &Course<S, P>) -> f64 {
+    fn merit(&self, course: &Course<M>) -> f64 {
         let logarithms: f64 = self.sides.iter().map(|side| side.distance(course).ln()).sum();
         let distance = self.distance(course);
         let merit =

@@ -1,15 +1,11 @@
 //! The search: a sequence of quadratic programmes with a barrier.
 
 use liestep::StepError;
-use liestep::gradients::Linearisable;
-use liestep::groups::{ExponentialRetraction, LieGroup as _, Retraction};
-use liestep::mechanics::{Group, SecondDerivatives};
-use liestep::motion::{Plan, StateOf};
-use liestep::numbers::Coordinates as _;
+use liestep::gradients::Plant;
 use nalgebra::{DMatrix, DVector};
 
 use crate::control::{Control, Cost};
-use crate::model::{Model, by_displacement, flat};
+use crate::model::{Model, by_displacement};
 use crate::riccati::{End, Stage, add_square, of_state, solve};
 use crate::verdict::{ControlError, ControlPlan, Residual, Verdict};
 
@@ -17,10 +13,10 @@ use crate::verdict::{ControlError, ControlPlan, Residual, Verdict};
 pub(crate) const FOUND: f64 = 1e-6;
 
 /// A motion, and its miss of the target.
-pub(crate) struct Course<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
-    pub(crate) model: Model<S, P>,
+pub(crate) struct Course<M: Plant> {
+    pub(crate) model: Model<M>,
     pub(crate) inputs: Vec<DVector<f64>>,
-    pub(crate) states: Vec<StateOf<S, P>>,
+    pub(crate) states: Vec<M::State>,
     pub(crate) miss: DVector<f64>,
     /// The constrained values, state by state after the start.
     pub(crate) kept: Vec<f64>,
@@ -30,7 +26,7 @@ pub(crate) struct Course<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
     pub(crate) slopes: Vec<DVector<f64>>,
 }
 
-impl<S: SecondDerivatives<Scalar = f64>, P: Plan<S>> Course<S, P> {
+impl<M: Plant> Course<M> {
     /// The violated constraints, by their places, and their negative values.
     pub(crate) fn broken(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.kept.iter().copied().enumerate().filter(|(_, value)| *value < 0.0)
@@ -55,7 +51,7 @@ pub(crate) enum Limit {
 }
 
 impl Side {
-    pub(crate) fn distance<S: SecondDerivatives<Scalar = f64>, P: Plan<S>>(&self, course: &Course<S, P>) -> f64 {
+    pub(crate) fn distance<M: Plant>(&self, course: &Course<M>) -> f64 {
         match self.limit {
             Limit::Input(input, sign, bound) => sign * (course.inputs[self.step][input] - bound),
             Limit::Kept(place) => course.distances[place],
@@ -63,7 +59,7 @@ impl Side {
     }
 
     /// The constrained value minus its slack.
-    pub(crate) fn gap<S: SecondDerivatives<Scalar = f64>, P: Plan<S>>(&self, course: &Course<S, P>) -> f64 {
+    pub(crate) fn gap<M: Plant>(&self, course: &Course<M>) -> f64 {
         match self.limit {
             Limit::Input(..) => 0.0,
             Limit::Kept(place) => course.kept[place] - course.distances[place],
@@ -71,9 +67,9 @@ impl Side {
     }
 }
 
-pub(crate) struct Search<'c, 'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>> {
-    pub(crate) control: &'c Control<'a, S, P>,
-    pub(crate) course: Course<S, P>,
+pub(crate) struct Search<'c, 'a, M: Plant> {
+    pub(crate) control: &'c Control<'a, M>,
+    pub(crate) course: Course<M>,
     /// The multipliers of the conditions at the end.
     pub(crate) multipliers: DVector<f64>,
     pub(crate) sides: Vec<Side>,
@@ -87,20 +83,15 @@ pub(crate) struct Search<'c, 'a, S: SecondDerivatives<Scalar = f64>, P: Plan<S>>
     pub(crate) is_nearest: bool,
 }
 
-impl<S, P> Control<'_, S, P>
-where
-    S: SecondDerivatives<Scalar = f64> + Clone,
-    P: Linearisable<S> + Clone,
-    ExponentialRetraction: Retraction<Group<S>>,
-{
+impl<M: Plant> Control<'_, M> {
     /// Searches for an optimum; the [verdict](ControlPlan::verdict) says whether one was found.
     ///
     /// # Errors
     ///
     /// [`ControlError`] if the search can't start.
-    pub fn solve(&self) -> Result<ControlPlan<S, P>, ControlError> {
-        self.stepper.linearised()?;
-        let scalars = self.like.scalars::<f64>().len();
+    pub fn solve(&self) -> Result<ControlPlan<M>, ControlError> {
+        self.stepper.check()?;
+        let scalars = M::numbers(&self.like).len();
         let is_new = |(k, place): (usize, &usize)| *place < scalars && !self.places[..k].contains(place);
         let is_input = !self.places.is_empty() && self.places.iter().enumerate().all(is_new);
         let all = || (0..self.steps).flat_map(|step| (0..self.places.len()).map(move |input| (step, input)));
@@ -112,7 +103,13 @@ where
             ("bounds", all().all(|(step, input)| is_ordered((self.bounds)(step, input)))),
             ("first guess", all().all(|(step, input)| (self.guess)(step, input).is_finite())),
             ("cost", is_cost),
-            ("target", self.target.momentum.is_none_or(|momentum| momentum.is_finite())),
+            (
+                "target",
+                self.target
+                    .momentum
+                    .as_ref()
+                    .is_none_or(|momentum| M::components(momentum).iter().all(|entry| entry.is_finite())),
+            ),
         ];
         match checks.iter().find(|(_, is_right)| !is_right) {
             Some((what, _)) => Err(ControlError::Unusable(what)),
@@ -121,21 +118,18 @@ where
     }
 }
 
-impl<'c, 'a, S, P> Search<'c, 'a, S, P>
-where
-    S: SecondDerivatives<Scalar = f64> + Clone,
-    P: Linearisable<S> + Clone,
-    ExponentialRetraction: Retraction<Group<S>>,
-{
-    pub(crate) const DIMENSION: usize = Group::<S>::DIMENSION;
+impl<'c, 'a, M: Plant> Search<'c, 'a, M> {
+    fn dimension(&self) -> usize {
+        self.control.stepper.dimension()
+    }
 
-    pub(crate) fn begin(control: &'c Control<'a, S, P>) -> Result<Self, ControlError> {
+    pub(crate) fn begin(control: &'c Control<'a, M>) -> Result<Self, ControlError> {
         #[allow(clippy::cast_precision_loss)] // exact up to 2⁵³
         let duration = control.stepper.step_size() * control.steps as f64;
         let model = Model::new(control, duration).ok_or(ControlError::Unusable("duration"))?;
         for (number, value) in control.kept.iter().enumerate() {
             // A NaN violates the constraint, too.
-            match value(0, &control.start) {
+            match value(0, M::motion(&control.start)) {
                 within if within >= 0.0 => {}
                 value => return Err(ControlError::Outside(number, value)),
             }
@@ -206,7 +200,7 @@ where
             .filter(|cost| *cost > 0.0)
     }
 
-    pub(crate) fn run(mut self) -> Result<ControlPlan<S, P>, ControlError> {
+    pub(crate) fn run(mut self) -> Result<ControlPlan<M>, ControlError> {
         let (tolerance, mut iterations) = (self.control.tolerance, 0);
         let mut is_found = false;
         let verdict = loop {
@@ -262,8 +256,9 @@ where
     /// The derivatives of the constrained values.
     fn slopes(&self, stages: &[Stage]) -> Option<Vec<DVector<f64>>> {
         let (Course { model, states, .. }, kept) = (&self.course, &self.control.kept);
-        let values =
-            |step: usize| move |state: &StateOf<S, P>, _: &[f64]| kept.iter().map(|value| value(step, state)).collect();
+        let values = |step: usize| {
+            move |state: &M::State, _: &[f64]| kept.iter().map(|value| value(step, M::motion(state))).collect()
+        };
         let mut found = Vec::with_capacity(self.course.kept.len());
         for (step, stage) in (1..).zip(stages).take_while(|_| !kept.is_empty()) {
             let slopes =
@@ -300,13 +295,13 @@ where
                     stage.fixed.push(input);
                 }
                 stage.hessian[(states + input, states + input)] = square;
-                if states > 2 * Self::DIMENSION {
+                if states > 2 * self.dimension() {
                     let mixed = weights.effort * chosen[input] * h / model.duration;
                     stage.hessian[(states + input, states - 1)] = mixed;
                     stage.hessian[(states - 1, states + input)] = mixed;
                 }
             }
-            if states > 2 * Self::DIMENSION {
+            if states > 2 * self.dimension() {
                 let slope = weights.time + 0.5 * weights.effort * chosen.norm_squared();
                 stage.state_gradient[states - 1] = slope * h / model.duration;
             }
@@ -316,7 +311,7 @@ where
         self.course.inputs.iter().enumerate().map(stage).collect()
     }
 
-    pub(crate) fn cost(&self, course: &Course<S, P>) -> f64 {
+    pub(crate) fn cost(&self, course: &Course<M>) -> f64 {
         let Cost { time, effort } = self.control.cost;
         let squares: f64 = course.inputs.iter().map(DVector::norm_squared).sum();
         time * course.model.duration + effort * 0.5 * course.model.stepper.step_size() * squares
@@ -338,12 +333,12 @@ where
 
     /// The derivatives of the miss by the last state.
     fn by_last_state(&self) -> Option<DMatrix<f64>> {
-        let dimension = Self::DIMENSION;
+        let dimension = self.dimension();
         let mut found = DMatrix::zeros(self.course.miss.len(), self.course.model.states());
         let mut row = 0;
-        if let Some(target) = self.control.target.attitude {
-            let turn = target.inverse().compose(&self.course.states[self.control.steps].attitude());
-            let derivative = by_displacement::<Group<S>>(&turn)?;
+        if let Some(target) = &self.control.target.attitude {
+            let last = &self.course.states[self.control.steps];
+            let derivative = by_displacement(self.control.stepper, target, last)?;
             found.view_mut((0, 0), (dimension, dimension)).copy_from(&derivative);
             row = dimension;
         }
@@ -384,7 +379,7 @@ where
         for (slopes, stage) in slopes.iter_mut().zip(stages) {
             stage.fixed.iter().for_each(|&input| slopes[input] = 0.0);
         }
-        let by_duration = covectors[0].iter().skip(2 * Self::DIMENSION);
+        let by_duration = covectors[0].iter().skip(2 * self.dimension());
         let all = slopes.iter().flatten().chain(by_duration);
         let stationarity = all.fold(0.0_f64, |most, slope| most.max(slope.abs()));
         Residual { stationarity, target: self.course.miss.amax(), kept, complementarity }
@@ -402,22 +397,17 @@ where
 }
 
 /// The course with these inputs, and slacks equal to the values; `None` without finite values and a finite miss.
-pub(crate) fn course<S, P>(
-    control: &Control<'_, S, P>,
-    model: Model<S, P>,
+pub(crate) fn course<M: Plant>(
+    control: &Control<'_, M>,
+    model: Model<M>,
     inputs: Vec<DVector<f64>>,
-) -> Result<Option<Course<S, P>>, (usize, StepError)>
-where
-    S: SecondDerivatives<Scalar = f64> + Clone,
-    P: Linearisable<S> + Clone,
-    ExponentialRetraction: Retraction<Group<S>>,
-{
+) -> Result<Option<Course<M>>, (usize, StepError)> {
     let states = model.run(&control.start, &inputs)?;
     let values = states
         .iter()
         .enumerate()
         .skip(1)
-        .flat_map(|(step, state)| control.kept.iter().map(move |value| value(step, state)));
+        .flat_map(|(step, state)| control.kept.iter().map(move |value| value(step, M::motion(state))));
     let kept: Vec<f64> = values.collect();
     let Some(miss) = miss(control, &states).filter(|_| kept.iter().all(|value| value.is_finite())) else {
         return Ok(None);
@@ -426,17 +416,20 @@ where
 }
 
 /// The miss of the target, in coordinates about it; `None` if these don't reach the end.
-pub(crate) fn miss<S, P>(control: &Control<'_, S, P>, states: &[StateOf<S, P>]) -> Option<DVector<f64>>
-where
-    S: SecondDerivatives<Scalar = f64>,
-    P: Plan<S>,
-    ExponentialRetraction: Retraction<Group<S>>,
-{
+pub(crate) fn miss<M: Plant>(control: &Control<'_, M>, states: &[M::State]) -> Option<DVector<f64>> {
     let (last, mut left) = (states.last()?, Vec::new());
-    if let Some(target) = control.target.attitude {
-        left.push(ExponentialRetraction::local_coordinates(&target.inverse().compose(&last.attitude()))?);
+    if let Some(target) = &control.target.attitude {
+        left.extend(control.stepper.displacement(target, last)?);
     }
-    left.extend(control.target.momentum.map(|target| last.momentum() - target));
-    let left = flat(&left);
-    left.iter().all(|entry| entry.is_finite()).then_some(left)
+    if let Some(target) = &control.target.momentum {
+        left.extend(
+            control
+                .stepper
+                .momentum(last)
+                .iter()
+                .zip(M::components(target))
+                .map(|(momentum, target)| momentum - target),
+        );
+    }
+    left.iter().all(|entry| entry.is_finite()).then(|| DVector::from_vec(left))
 }

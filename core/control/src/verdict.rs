@@ -1,19 +1,17 @@
 //! The results of a search: a plan, its residual, and a verdict.
 
-use liestep::gradients::InputOf;
-use liestep::mechanics::SecondDerivatives;
-use liestep::motion::{Plan, StateOf, Stepper};
+use liestep::gradients::Plant;
 use liestep::{SetupError, StepError};
 
 /// A motion to the target, and its inputs.
 #[derive(Clone, Debug)]
-pub struct ControlPlan<S: SecondDerivatives, P: Plan<S>> {
+pub struct ControlPlan<M: Plant> {
     /// The stepper, with the step of the plan's duration.
-    pub stepper: Stepper<S, P>,
+    pub stepper: M,
     /// The states, one more than there are steps.
-    pub states: Vec<StateOf<S, P>>,
+    pub states: Vec<M::State>,
     /// The input of each step.
-    pub inputs: Vec<InputOf<S>>,
+    pub inputs: Vec<M::Input>,
     /// The time from the first state to the last, s.
     pub duration: f64,
     /// The cost of this plan.

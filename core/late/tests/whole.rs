@@ -1,6 +1,9 @@
 //! Whole steps on groups that a text declares: order, momentum in space and the group's relation; compositions,
 //! substeps and prescribed values as by typed steppers; errors.
 
+#[path = "whole/tangent.rs"]
+mod tangent;
+
 use declarations::FullTop;
 use liestep::effects::{RigidBody, Torque};
 use liestep::mechanics::Effect as _;

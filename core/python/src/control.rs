@@ -1,28 +1,22 @@
-//! Plans of a motion on SO(3), by `liestep-control`.
+//! Plans of a motion on any group, by `liestep-control`.
 
 use std::cell::RefCell;
 
-use liestep::gradients::Input;
-use liestep::groups::LieGroup as _;
-use liestep::mechanics::WithKinetic;
-use liestep::motion::OwnStep;
+use liestep::gradients::Plant as _;
+use liestep::motion::{AnyStepper, FactorKind, Integrator as _, Propagator as _};
 use liestep::recording::{Column, Sink as _};
-use liestep::{SO3, Stepper};
+use liestep::with::Method;
 use liestep_control::{Control, ControlError, ControlPlan, Cost, Residual, Target, Verdict};
-use liestep_late::{Declaration, LateError};
+use liestep_late::{Declaration, Whole};
 use nalgebra::{Matrix3, Vector3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::ensemble::columns;
 use crate::failure::Failure;
-use crate::run::listed;
-use crate::scene::{Four, Late};
+use crate::scene::Backend;
 use crate::start::Start;
 use crate::table::Columns;
-
-/// The type of all scenes on SO(3), whatever their terms.
-type Scene = Late<SO3, Four, WithKinetic>;
 
 /// The task of a plan: start, goal, inputs, bounds and cost.
 #[derive(FromPyObject)]
@@ -30,12 +24,14 @@ pub(crate) struct Task {
     step: f64,
     steps: usize,
     start: Start,
-    /// The goal; attitude or velocity may be free.
+    /// The goal; the attitude is free if it is empty.
     goal: Start,
-    /// The axes of the body with a torque.
+    /// Whether the velocity at the end is free.
+    ends_anyhow: bool,
+    /// The components of the velocity along which a force acts.
     axes: Vec<usize>,
-    /// The least, the largest and the first torque about each axis in each step, N m.
-    torques: Vec<[f64; 3]>,
+    /// The least, the largest and the first force along each of them in each step, on SO(3) N m.
+    forces: Vec<[f64; 3]>,
     /// An axis of the body, a direction of space, and the cosine of the angle between both, which isn't exceeded.
     cones: Vec<([f64; 3], [f64; 3], f64)>,
     is_shortest: bool,
@@ -46,30 +42,27 @@ pub(crate) struct Task {
 }
 
 /// The plan, and the exception raised during its search.
-type PlanResult = (ControlPlan<Scene, OwnStep<Scene>>, Option<PyErr>);
+type PlanResult = (ControlPlan<Whole<Backend>>, Option<PyErr>);
 
 impl Task {
     fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<PlanResult, Failure> {
-        // A sum with more than four vectors advects the directions of space instead.
-        let scene = match Scene::of(Declaration::sum(terms)?) {
-            Err(LateError::Advected { .. }) => Scene::of(Declaration::sum_in_frames(terms)?)?,
-            other => other?,
-        };
-        let scene = scene.with_all(numbers)?.differentiable()?;
-        let stepper = Stepper::new(scene, self.step).map_err(|error| Failure::setup(&error))?;
-        let factors = SO3::<f64>::factors();
-        let attitude = |place: &Start| {
-            place.attitude(&factors).map(|entries| SO3::from_matrix_unchecked(Matrix3::from_row_slice(&entries)))
-        };
+        let stepper = Whole::<Backend>::of(Declaration::sum(terms)?, numbers, self.step, Method::default())?;
+        let factors = &stepper.layout().factors;
         let at = |place: &Start| {
-            let velocity = Vector3::from_column_slice(place.velocity(&factors)?);
-            stepper.start(attitude(place)?, velocity).map_err(|error| Failure::setup(&error))
+            let rest = vec![0.0; stepper.dimension()];
+            let velocity = if place.velocity.is_empty() { &rest } else { place.velocity(factors)? };
+            stepper.start(&place.attitude(factors)?, velocity).map_err(|error| Failure::setup(&error))
         };
-        let (goes_anywhere, ends_anyhow) = (self.goal.attitude.is_empty(), self.goal.velocity.is_empty());
+        let end = at(&self.goal)?;
         let target = Target {
-            attitude: if goes_anywhere { None } else { Some(attitude(&self.goal)?) },
-            momentum: if ends_anyhow { None } else { Some(at(&self.goal)?.momentum()) },
+            attitude: (!self.goal.attitude.is_empty()).then(|| stepper.attitude(&end)),
+            momentum: (!self.ends_anyhow).then(|| stepper.momentum(&end)),
         };
+        let is_about_a_body = factors.first().is_some_and(|factor| factor.kind == FactorKind::Rotation);
+        if !self.cones.is_empty() && !is_about_a_body {
+            let message = "an axis that is kept out of a cone is one of a body: the first factor of the group is SO3";
+            return Err(Failure::Of("SetupError", message.to_owned()));
+        }
         let raised = RefCell::new(None);
         let goes_on = |iteration: usize, residual: &Residual| {
             let asked = Python::attach(|py| {
@@ -82,20 +75,20 @@ impl Task {
                 false
             })
         };
-        let torque = |step: usize, axis: usize| {
-            self.torques.get(step * self.axes.len() + axis).copied().unwrap_or([f64::NAN; 3])
+        let force = |step: usize, axis: usize| {
+            self.forces.get(step * self.axes.len() + axis).copied().unwrap_or([f64::NAN; 3])
         };
         let (time, effort) = if self.is_shortest { (1.0, 0.0) } else { (0.0, 1.0) };
         let control = Control::new(&stepper, at(&self.start)?, self.steps, target)
-            .input(Input::Force(Vector3::zeros()), self.axes.iter().copied())
-            .bounds(|step, axis| (torque(step, axis)[0], torque(step, axis)[1]))
-            .guess(|step, axis| torque(step, axis)[2])
+            .input(stepper.force(), self.axes.iter().copied())
+            .bounds(|step, axis| (force(step, axis)[0], force(step, axis)[1]))
+            .guess(|step, axis| force(step, axis)[2])
             .minimise(Cost { time, effort })
             .until(self.tolerance, self.most)
             .progress(goes_on);
         let control = self.cones.iter().fold(control, |control, &(axis, direction, cosine)| {
             let [axis, direction] = [axis, direction].map(Vector3::from);
-            control.keep(move |_, motion| cosine - direction.dot(&(motion.attitude().as_matrix() * axis)))
+            control.keep(move |_, state| cosine - direction.dot(&(Matrix3::from_row_slice(&state[..9]) * axis)))
         });
         let plan = control.solve().map_err(|error| match error {
             ControlError::Step(..) => Failure::step(&error),
@@ -106,7 +99,7 @@ impl Task {
     }
 }
 
-/// A plan of the sum of these terms, which were declared with `gradients`, as Python sees it.
+/// A plan of the sum of these terms, as Python sees it.
 pub(crate) fn plan<'py>(
     py: Python<'py>,
     terms: &[&'static Declaration],
@@ -121,17 +114,23 @@ pub(crate) fn plan<'py>(
         written.map_err(|error| Failure::Of("MemoryError", error.to_string()))?;
         Py::new(py, table.into_table())
     };
-    let (mut states, mut attitude) = (Vec::new(), [0.0; 4]);
-    for state in &plan.states {
-        state.attitude().write_numbers(&mut attitude);
-        states.push(plan.stepper.time(state));
-        states.extend(attitude);
-        states.extend(listed(&plan.stepper.velocity(state)).into_iter().chain(listed(&state.momentum())));
-        states.push(plan.stepper.energy(state));
+    let any = AnyStepper::new(plan.stepper.clone());
+    let (factors, columns) = (&any.layout().factors, columns(&any.layout().factors));
+    let of_attitude = factors.iter().map(|factor| factor.kind.columns()).sum();
+    let (mut states, mut attitude, mut row) = (Vec::new(), vec![0.0; of_attitude], vec![0.0; columns.len()]);
+    for state in plan.states.iter().filter_map(|state| any.state_of(state)) {
+        states.push(any.time(&state));
+        any.write(&state, &(), &mut attitude, &mut row);
+        states.extend(&row[..columns.len() - 1]);
     }
-    dictionary.set_item("table", table(columns(&SO3::<f64>::factors()), states)?)?;
-    let torques = ["x", "y", "z"].map(|axis| Column { name: format!("torque_{axis}"), unit: "N m".to_owned() });
-    dictionary.set_item("inputs", table(torques.into(), plan.inputs.iter().flat_map(Input::scalars).collect())?)?;
+    dictionary.set_item("table", table(columns, states)?)?;
+    let names = factors.iter().flat_map(|factor| &factor.components);
+    let forces = names.map(|(name, [velocity, _])| match *velocity {
+        "rad/s" => Column { name: format!("torque_{name}"), unit: "N m".to_owned() },
+        "m/s" => Column { name: format!("force_{name}"), unit: "N".to_owned() },
+        _ => Column { name: format!("force_{name}"), unit: String::new() },
+    });
+    dictionary.set_item("inputs", table(forces.collect(), plan.inputs.concat())?)?;
     let (verdict, why, certificate) = match plan.verdict {
         Verdict::Converged => ("converged", None, None),
         Verdict::Infeasible { direction, gap } => ("infeasible", None, Some((direction, gap))),
@@ -143,7 +142,7 @@ pub(crate) fn plan<'py>(
     dictionary.set_item("verdict", verdict)?;
     dictionary.set_item("why", why)?;
     dictionary.set_item("certificate", certificate)?;
-    dictionary.set_item("step", plan.stepper.step_size())?;
+    dictionary.set_item("step", any.step_size())?;
     dictionary.set_item("duration", plan.duration)?;
     dictionary.set_item("cost", plan.cost)?;
     dictionary.set_item("residual", plan.residual.largest())?;

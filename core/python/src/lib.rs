@@ -58,6 +58,12 @@ impl Derivation {
         self.0.group()
     }
 
+    /// The number of components of a velocity.
+    #[getter]
+    fn dimension(&self) -> usize {
+        self.0.factors.iter().map(|factor| factor.generators.len()).sum()
+    }
+
     #[getter]
     fn is_force(&self) -> bool {
         self.0.role == Role::Force

@@ -236,10 +236,3 @@ fn entries(factors: &[Factor]) -> impl Iterator<Item = String> {
         (0..rows * rows).map(name).collect::<Vec<_>>()
     })
 }
-
-/// The numbers of a vector or a matrix.
-pub(crate) fn listed(value: &impl liestep::numbers::Entries<f64>) -> Vec<f64> {
-    let mut list = Vec::new();
-    value.each(&mut |entry| list.push(entry));
-    list
-}

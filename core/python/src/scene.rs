@@ -17,18 +17,18 @@ use crate::failure::Failure;
 use crate::run::{Course, RunRecord, record};
 use crate::start::{Start, started};
 
-pub(crate) type V<const N: usize> = SVector<f64, N>;
+type V<const N: usize> = SVector<f64, N>;
 /// The advected vectors on SO(3) where there are several, and those beside the energy of a pace.
-pub(crate) type Four = (V<3>, V<3>, V<3>, V<3>);
+type Four = (V<3>, V<3>, V<3>, V<3>);
 type WithEnergy = (Given<f64>, V<3>, V<3>, V<3>);
 
 /// The back end of programs: machine code if that feature is on, otherwise the interpreter, with the same bits.
 #[cfg(feature = "machine")]
-type Backend = liestep_machine::Machine;
+pub(crate) type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
-type Backend = liestep_late::Interpreter;
+pub(crate) type Backend = liestep_late::Interpreter;
 
-pub(crate) type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
+type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
 type Sum<G, W> = Late<G, W, WithKinetic>;
 
 /// A declaration whose group and advected parameters are types inside, and numbers outside.

@@ -150,7 +150,43 @@ def test_hostile_tasks(wrong):
 
 
 def test_what_has_no_plan_here():
-    with pytest.raises(ls.SetupError, match="SO3"):
-        ls.lagrangian("R1", l_d="m * (F - I).norm_squared() / (2 * h)", m=1).control(step=0.1, steps=3)
+    with pytest.raises(ls.SetupError, match="first factor"):
+        ls.lagrangian("R1", l_d="m * (F - I).norm_squared() / (2 * h)", m=1).control(
+            step=0.1, steps=3, keep_out=[([1, 0, 0], [0, 0, 1], 0.3)]).solve()
+    with pytest.raises(ls.SetupError, match="components 0 to 0"):
+        ls.lagrangian("R1", l_d="m * (F - I).norm_squared() / (2 * h)", m=1).control(step=0.1, steps=3, axes="x")
     with pytest.raises(ls.StepError):
         ls.body(BODY).control(step=0.5, steps=10, goal=ls.euler(0, 1), guess=100).solve()
+
+
+def metric(generators, J, goal, steps):
+    """The least effort from the identity to a goal in two seconds, on the group of these generators."""
+    text = "((F - I) * J * (F - I).transpose()).trace() / (2 * h)"
+    body = ls.lagrangian("Own", l_d=text, generators=generators, J=J)
+    plan = body.control(step=2 / steps, steps=steps, goal=goal).solve()
+    assert plan.converged and plan.force.shape == (steps, len(generators))
+    return plan.cost
+
+
+def test_the_least_effort_on_groups_of_ones_own():
+    """From rest to rest along a one-parameter group with the inertia J it is ``6 J² θ²/T³``."""
+    import scipy.linalg
+
+    turns = [np.zeros((4, 4)) for _ in range(6)]
+    for turn, (i, j) in zip(turns, [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)]):
+        turn[i, j], turn[j, i] = -1, 1
+    exact = 6 * 2**2 * 0.8**2 / 8
+    coarse, fine = (metric(turns, np.eye(4), scipy.linalg.expm(0.8 * turns[0]), n) / exact - 1 for n in (20, 40))
+    assert abs(fine) < 2e-3 and coarse / fine == pytest.approx(4, abs=0.05)
+
+
+def test_a_wheel_turns_a_body():
+    """A torque on a wheel alone turns body and wheel against each other: momentum in space stays zero."""
+    text = "((F - I) * J_d * (F - I).transpose()).trace() / (2 * h) + J_w * (t + vee(F).x).powi(2) / (2 * h)"
+    satellite = ls.lagrangian({"F": "SO3", "t": "R1"}, l_d=text, J_d=np.diag([1.5, 1.0, 0.5]), J_w=0.3)
+    plan = satellite.control(step=0.05, steps=40, axes=[3], goal_velocity=[0.5, 0, 0, -0.5 * (1.5 + 0.3) / 0.3]).solve()
+    assert plan.converged, plan.why
+    assert plan["momentum_x_1"] == pytest.approx(0, abs=1e-12)
+    assert plan["velocity_x_1"][-1] == pytest.approx(0.5, abs=1e-9)
+    # The angular impulse of the wheel is its own momentum at the end.
+    assert plan.force[:, 3].sum() * 0.05 == pytest.approx(0.3 * (0.5 - 0.5 * 1.8 / 0.3), abs=1e-9)

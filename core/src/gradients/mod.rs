@@ -95,12 +95,14 @@
 mod adjoint;
 mod exponents;
 mod input;
+mod plant;
 mod recording;
 mod stage;
 mod tangent;
 
 pub use adjoint::{Backwards, Gradient, Tape};
 pub use input::{Input, InputOf, Transition};
+pub use plant::{Both, Plant};
 pub use recording::{Change, ChangeOf};
 pub use stage::{Cotangent, FlowDerivatives, Pass, Stage};
 pub(crate) use stage::{ForceGradient, add_shares};

@@ -1,6 +1,6 @@
 //! Constraints on values of the states.
 
-use liestep::motion::{Motion, OwnStep};
+use liestep::motion::Motion;
 
 use super::*;
 
@@ -12,7 +12,7 @@ fn away_from(sun: Vector3<f64>, angle: f64) -> impl Fn(usize, &MotionOfBody) -> 
 }
 
 /// A turn past the sun, which is a little beside the middle of the way.
-fn past_the_sun(stepper: &Body, steps: usize, angle: f64) -> Control<'_, RigidBody, OwnStep<RigidBody>> {
+fn past_the_sun(stepper: &Body, steps: usize, angle: f64) -> Control<'_, Body> {
     let sun = Vector3::new(0.75_f64.cos(), 0.75_f64.sin(), 0.1).normalize();
     slew(stepper, steps, [0.0, 0.0, 1.5]).keep(away_from(sun, angle))
 }

@@ -16,6 +16,7 @@ use nalgebra::{Matrix4, SVector, UnitQuaternion, Vector3, Vector4};
 
 mod estimates;
 mod kept;
+mod whole;
 
 type Body = Stepper<RigidBody>;
 /// The cost of the shortest time.
@@ -33,12 +34,12 @@ fn turned(angles: [f64; 3]) -> SO3 {
 }
 
 /// A turn from rest to rest.
-fn slew(stepper: &Body, steps: usize, angles: [f64; 3]) -> Control<'_, RigidBody, liestep::motion::OwnStep<RigidBody>> {
+fn slew(stepper: &Body, steps: usize, angles: [f64; 3]) -> Control<'_, Body> {
     let start = stepper.start(SO3::identity(), Vector3::zeros()).expect("a start");
     Control::new(stepper, start, steps, Target::rest(turned(angles)))
 }
 
-fn torques<P: liestep::motion::Plan<RigidBody>>(plan: &ControlPlan<RigidBody, P>) -> Vec<Vector3<f64>> {
+fn torques(plan: &ControlPlan<Body>) -> Vec<Vector3<f64>> {
     let torque = |input: &Input<Vector3<f64>, ()>| match input {
         Input::Force(torque) => *torque,
         _ => panic!("a force was chosen, not {input:?}"),
@@ -105,7 +106,7 @@ fn the_shortest_half_turn_of_a_sphere() {
 }
 
 /// A half turn whose guessed torque goes round once: on the way about the eigenaxis the gradient vanishes by symmetry.
-fn half_turn(stepper: &Body, steps: usize) -> Control<'_, RigidBody, liestep::motion::OwnStep<RigidBody>> {
+fn half_turn(stepper: &Body, steps: usize) -> Control<'_, Body> {
     let guess = move |step, axis| {
         let share = step as f64 / steps as f64;
         match axis {
@@ -178,7 +179,7 @@ fn random_slews_converge() {
 /// moving ends, by a torque and by a free duration.
 #[test]
 fn near_a_plan_the_digits_double() {
-    let residuals = |task: Control<'_, RigidBody, liestep::motion::OwnStep<RigidBody>>| {
+    let residuals = |task: Control<'_, Body>| {
         let shown = std::cell::RefCell::new(Vec::new());
         let note = |_: usize, residual: &liestep_control::Residual| {
             shown.borrow_mut().push(residual.largest());
@@ -280,7 +281,7 @@ fn steps_that_cannot_be_made() {
 fn tasks_that_are_none() {
     let stepper = body([1.0, 2.0, 2.5], 0.1);
     let task = || slew(&stepper, 3, [0.1; 3]);
-    let error = |task: Control<'_, _, _>| task.solve().err();
+    let error = |task: Control<'_, _>| task.solve().err();
     let unusable = |what| Some(ControlError::Unusable(what));
     let force = Input::Force(Vector3::zeros());
     assert_eq!(error(task().bounds(|_, axis| if axis == 1 { (1.0, 0.0) } else { (0.0, 1.0) })), unusable("bounds"));

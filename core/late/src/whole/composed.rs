@@ -101,8 +101,25 @@ impl Stages {
         if self.list.is_empty() {
             numbered.step(self.first(), state, room)
         } else {
-            self.compose(numbered, state, room)
+            self.compose(numbered, state, room, &mut |_, _| ())
         }
+    }
+
+    /// One step, whose stages are watched: `watch` gets the constants of each and the state before it, and then after it.
+    pub(super) fn watched<B: Backend<f64>>(
+        &self,
+        numbered: Numbered<'_, B>,
+        state: &mut [f64],
+        room: &mut [f64],
+        watch: &mut impl FnMut(&StepConstants, &[f64]),
+    ) -> Result<u32, StepError> {
+        if !self.list.is_empty() {
+            return self.compose(numbered, state, room, watch);
+        }
+        watch(self.first(), state);
+        let iterations = numbered.step(self.first(), state, room)?;
+        watch(self.first(), state);
+        Ok(iterations)
     }
 
     fn compose<B: Backend<f64>>(
@@ -110,6 +127,7 @@ impl Stages {
         numbered: Numbered<'_, B>,
         state: &mut [f64],
         room: &mut [f64],
+        watch: &mut impl FnMut(&StepConstants, &[f64]),
     ) -> Result<u32, StepError> {
         let sizes = &numbered.codes.sizes;
         let (next, room) = room.split_at_mut(state.len());
@@ -118,7 +136,10 @@ impl Stages {
         let mut iterations = 0;
         for stage in &self.list {
             earlier.copy_from_slice(&next[sizes.history()..sizes.history() + sizes.n]);
-            let made = numbered.increment(&self.constants[stage.constants], next, room)?;
+            let constants = &self.constants[stage.constants];
+            watch(constants, next);
+            let made = numbered.increment(constants, next, room)?;
+            watch(constants, next);
             stage.guess(made, earlier, &mut next[sizes.history()..]);
             iterations += made.iterations;
         }

@@ -16,20 +16,26 @@
 //! Deliberately not here: splittings, collocation, joints and systems, densities, compensated sums. They are typed, and
 //! behind the same [`Propagator`](liestep::motion::Propagator).
 //!
-//! The files depend on each other in one direction: `abreast → stepper → composed → step → diagnosis → {care → iteration, constants} →
-//! limit → {codes, linear}`.
+//! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
+//! `inputs → tangent → composed` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
+//! {codes, linear}`.
 
 mod abreast;
+mod algebra;
 mod care;
 mod codes;
 mod composed;
 mod constants;
 mod diagnosis;
+mod inputs;
 mod iteration;
 mod limit;
 mod linear;
+mod plant;
 mod step;
 mod stepper;
+mod tangent;
 
 pub use abreast::BackendInLanes;
+pub use inputs::Transition;
 pub use stepper::{Whole, WholeError};

@@ -59,7 +59,7 @@ use crate::error::LateError;
 pub struct Whole<B: Backend<f64> = Interpreter> {
     pub(super) codes: Arc<Codes<B>>,
     pub(super) numbers: Arc<[f64]>,
-    h: f64,
+    pub(super) h: f64,
     method: Method,
     pub(super) stages: Stages,
 }
@@ -197,31 +197,12 @@ impl<B: Backend<f64>> Whole<B> {
         Ok(state)
     }
 
-    /// Makes one step with other numbers for the parameters, such as prescribed forces or moving values in space; between
-    /// the steps the state has this stepper's own values again. On an error the state is unchanged.
-    ///
-    /// Numbers that are evaluated in the middle of each step leave the scheme of second order.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`step`](Propagator::step); [`StepError::NonFinite`] if the numbers can't be used.
-    pub fn step_with(&self, state: &mut [f64], numbers: &[f64]) -> Result<StepReport, StepError> {
-        let mut next = self.checked(state)?.to_vec();
-        let driven =
-            self.with(numbers, self.h).map_err(|_| StepError::NonFinite { what: "value given to the step" })?;
-        driven.see(&mut next);
-        let report = driven.step(&mut next)?;
-        self.see(&mut next);
-        state.copy_from_slice(&next);
-        Ok(report)
-    }
-
     pub(super) fn numbered(&self) -> Numbered<'_, B> {
         Numbered { codes: &self.codes, numbers: &self.numbers }
     }
 
     /// The state if it has the length of one.
-    fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
+    pub(super) fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
         if state.len() == self.codes.sizes.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
     }
 
@@ -232,7 +213,7 @@ impl<B: Backend<f64>> Whole<B> {
     }
 
     /// The advected parameters of this stepper's numbers, from the attitude of a state.
-    fn see(&self, state: &mut [f64]) {
+    pub(super) fn see(&self, state: &mut [f64]) {
         let sizes = &self.codes.sizes;
         let advected = self.codes.seen(&self.numbers, &state[..sizes.entries]);
         state[sizes.advected()..sizes.history()].copy_from_slice(&advected);
@@ -345,7 +326,7 @@ impl<B: Backend<f64>> Whole<B> {
 
     /// Calls a function with the room of a step, on the stack unless it is large.
     #[inline]
-    fn in_room<R>(&self, run: impl FnOnce(&mut [f64]) -> R) -> R {
+    pub(super) fn in_room<R>(&self, run: impl FnOnce(&mut [f64]) -> R) -> R {
         match self.room() {
             size @ 0..=96 => run(&mut [0.0; 96][..size]),
             size @ 97..=384 => run(&mut [0.0; 384][..size]),

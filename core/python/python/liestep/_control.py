@@ -1,7 +1,8 @@
-"""Optimal control: a motion from here to there by torques."""
+"""Optimal control: a motion from here to there by forces, on any group."""
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import cos, inf
@@ -35,8 +36,9 @@ class _Task:
     steps: int
     start: _Start
     goal: _Start
+    ends_anyhow: bool
     axes: list[int]
-    torques: list[list[float]]
+    forces: list[list[float]]
     cones: list[tuple[list[float], list[float], float]]
     is_shortest: bool
     tolerance: float
@@ -45,12 +47,12 @@ class _Task:
 
 
 class Plan(Run):
-    """A motion with the torques that make it: a run, and what the search says of it.
+    """A motion with the forces that make it: a run, and the verdict of the search.
 
     Attributes
     ----------
     inputs : Columns
-        The torque of each step in the body's axes, N m; as an array `Plan.torque`.
+        The force of each step in the body frame, on SO(3) a torque, N m; as an array `Plan.force`.
     verdict : str
         ``"converged"``, ``"infeasible"``, ``"exhausted"``, ``"stalled"`` or ``"cancelled"``; `Plan.why` says what it means.
     duration, cost : float
@@ -92,37 +94,58 @@ class Plan(Run):
         """The torque of each step in the body's axes, N m: a row less than there are states."""
         return self.inputs.group("torque_")
 
+    @property
+    def force(self) -> Array:
+        """The force of each step, along all components of a velocity: a row less than there are states."""
+        return self.inputs.group("")
+
     def __repr__(self) -> str:
         return f"<Plan of {self.title}: {self.steps} {self.about}, {self.verdict} after {self.iterations} iterations>"
 
 
+def _components(axes: Any, dimension: int, is_body: bool) -> list[int]:
+    """The components of a velocity by their numbers, or by the names of a body's axes."""
+    if axes is None:
+        return list(range(dimension))
+    known = f'some of the components 0 to {dimension - 1}' + (' or of "xyz"' if is_body else "")
+    try:
+        named = ["xyz".index(axis) for axis in axes] if isinstance(axes, str) and is_body else [operator.index(k) for k in axes]
+    except (TypeError, ValueError) as error:
+        raise SetupError(f"`axes` are {known}, not {axes!r:.80}") from error
+    if not named or any(not 0 <= k < dimension for k in named):
+        raise SetupError(f"`axes` are {known}, not {axes!r:.80}")
+    return named
+
+
 class Control:
-    """A task of optimal control on SO(3); made by `Term.control`.
+    """A task of optimal control on any group; made by `Term.control`.
 
     It is data, and pickles.
 
     Parameters
     ----------
     term : Term
-        What moves, with its forces; the torque is beside them.
+        The Lagrangian, with its forces; the control force is beside them.
     step : float
         The length of a step, s; where the time is minimised that of the first guess.
     steps : int
         How many.
     start, velocity : array_like
-        Attitude and body velocity, rad/s, as `Stepper.run` has them; the identity at rest.
+        Attitude and body velocity, on SO(3) in rad/s, as `Stepper.run` has them; the identity at rest.
     goal, goal_velocity : array_like or None
         Where the motion ends, at rest if nothing else is said. With ``None`` any attitude, or any velocity, will do.
     bound : array_like, optional
-        The largest torque, N m: a number, one for each axis, or a row of these for each step; zero where the body coasts.
-    axes : str
-        The axes of the body that a torque acts about: ``"xyz"``, ``"z"``.
+        The largest force, on SO(3) a torque, N m: a number, one for each axis, or a row of these for each step; zero where the
+        motion is free.
+    axes : str or list of int, optional
+        The components of the velocity along which the force acts, from zero, all by default; on SO(3) also as a text, ``"z"``.
     minimum_time : bool
         Whether the time is minimised; else it is the effort ``½ ∫ |u|² dt``.
     guess : array_like, optional
-        The torque that the search begins with, of the shapes of `bound`. A search goes downhill from there.
+        The force that the search begins with, of the shapes of `bound`. A search goes downhill from there.
     keep_out : iterable of (array_like, array_like, float)
-        An axis of the body, a direction of space, and the angle that is to be between them at least, rad, in each state.
+        An axis of the body, a direction of space, and the least angle between them, rad, in each state; the first factor of the
+        group is SO(3).
 
     Examples
     --------
@@ -135,6 +158,13 @@ class Control:
     ('converged', 216.0, 216.0)
     >>> plan.torque.shape, plan.velocity.shape
     ((100, 3), (101, 3))
+
+    A cart that is pushed along a line, on the group of translations; its effort is ``6 m² x²/T³``.
+
+    >>> cart = ls.lagrangian("R1", l_d="m * (F - I).norm_squared() / (2 * h)", m=2.0)
+    >>> push = cart.control(step=0.01, steps=100, goal=[[1, 0.5], [0, 1]]).solve()
+    >>> push.verdict, round(push.cost, 2), push.force.shape
+    ('converged', 6.0, (100, 1))
     """
 
     def __init__(
@@ -144,33 +174,32 @@ class Control:
         step: float,
         steps: int,
         start: Any = None,
-        velocity: Any = (0, 0, 0),
+        velocity: Any = (),
         goal: Any = None,
-        goal_velocity: Any = (0, 0, 0),
+        goal_velocity: Any = (),
         bound: Any = None,
-        axes: str = "xyz",
+        axes: str | Iterable[int] | None = None,
         minimum_time: bool = False,
         guess: Any = None,
         keep_out: Iterable[tuple[Any, Any, float]] = (),
     ) -> None:
         import numpy as np
 
-        if term.group != "SO3" or term.role != "lagrangian" or term.has_pace:
-            raise SetupError(f"a plan is one of a Lagrangian on SO3 without a pace, and not of {term!r:.80}")
+        if term.role != "lagrangian" or term.has_pace:
+            raise SetupError(f"a plan is one of a Lagrangian without a pace, and not of {term!r:.80}")
         whole("steps", steps, 1, 10**6)
-        if not isinstance(axes, str) or not axes or any(axis not in "xyz" for axis in axes):
-            raise SetupError(f'`axes` are some of "xyz", not {axes!r:.80}')
+        along = _components(axes, term._terms()[0][0].dimension, term.group == "SO3")
 
         def spread(name: str, value: Any) -> Array:
             try:
-                return np.broadcast_to(floats(name, value, SetupError), (steps, len(axes)))
+                return np.broadcast_to(floats(name, value, SetupError), (steps, len(along)))
             except ValueError as error:
-                shape = f"a number, {len(axes)} of them, or {steps} rows of {len(axes)}"
+                shape = f"a number, {len(along)} of them, or {steps} rows of {len(along)}"
                 raise SetupError(f"`{name}` is {shape}, not of the shape {np.shape(value)}") from error
 
         largest = spread("bound", inf if bound is None else bound)
         first = spread("guess", 0.0 if guess is None else guess)
-        torques = np.stack([-largest, largest, first], axis=2).reshape(-1, 3)
+        forces = np.stack([-largest, largest, first], axis=2).reshape(-1, 3)
         cones = []
         try:
             kept_out = [(axis, direction, number("keep_out", angle)) for axis, direction, angle in keep_out]
@@ -188,11 +217,9 @@ class Control:
         if not 0 < length < inf:
             raise SetupError(f"`step` is a length above zero, s, not {step!r:.80}")
         self.term, self.steps, self.step = term, steps, length
-        end = _start(goal, (0, 0, 0) if goal_velocity is None else goal_velocity)
-        if goal_velocity is None:
-            end.velocity = []
-        self._task = _Task(self.step, steps, _start(start, velocity), end, ["xyz".index(axis) for axis in axes],
-                           torques.tolist(), cones, bool(minimum_time), 0.0, 0, None)
+        end = _start(goal, () if goal_velocity is None else goal_velocity)
+        self._task = _Task(self.step, steps, _start(start, velocity), end, goal_velocity is None, along, forces.tolist(), cones,
+                           bool(minimum_time), 0.0, 0, None)
 
     def solve(
         self,
@@ -229,7 +256,7 @@ class Control:
 
         whole("iterations", iterations, 0, 2**31 - 1)
         task = replace(self._task, tolerance=number("tolerance", tolerance), most=iterations, progress=progress)
-        made = _native.plan(self.term._terms(gradients=True), task)
+        made = _native.plan(self.term._terms(), task)
         plan = Plan(self.term.name, made)
         if made["failure"] is not None:
             made["failure"].run = plan

@@ -105,10 +105,9 @@ class Summand:
             value = _direction(name, value)
         return replace(self, numbers=tuple((own, value if own == name else old) for own, old in self.numbers))
 
-    def derived(self, gradients: bool = False) -> _native.Derivation:
+    def derived(self) -> _native.Derivation:
         """The derivation of the text, which is made once."""
-        is_there = not gradients or "gradients" in self.text.partition(",")[2].partition("=")[0]
-        return _native.Derivation(self.text if is_there else self.text.replace("(", "(gradients, ", 1))
+        return _native.Derivation(self.text)
 
 
 #: Summands and parameters by their numbers.
@@ -168,9 +167,9 @@ class Sum:
         """The equations as LaTeX, an ``align*`` for each summand."""
         return "\n".join(summand.derived().latex for summand in self.summands)
 
-    def _terms(self, gradients: bool = False) -> list[tuple[_native.Derivation, list[float]]]:
+    def _terms(self) -> list[tuple[_native.Derivation, list[float]]]:
         return [
-            (summand.derived(gradients), [number for _, (_, value) in summand.numbers for number in value])
+            (summand.derived(), [number for _, (_, value) in summand.numbers for number in value])
             for summand in self.summands
         ]
 

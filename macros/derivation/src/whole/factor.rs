@@ -70,7 +70,7 @@ impl MatrixFactor {
     }
 
     /// `Σ x_k E_k`.
-    fn hat(&self, words: &mut Words, x: &[Value]) -> Matrix {
+    pub(super) fn hat(&self, words: &mut Words, x: &[Value]) -> Matrix {
         let n = self.size();
         let mut matrix = Matrix::of(n, n, |_, _| Value::ZERO);
         for (e, &x) in self.basis.generators.iter().zip(x) {
@@ -83,7 +83,7 @@ impl MatrixFactor {
     }
 
     /// The components of an element of the algebra.
-    fn vee(&self, words: &mut Words, matrix: &Matrix) -> Vec<Value> {
+    pub(super) fn vee(&self, words: &mut Words, matrix: &Matrix) -> Vec<Value> {
         if self.basis.is_orthogonal {
             let pairings = self.pairings(words, matrix);
             return self.by_lengths(words, &pairings);

@@ -10,7 +10,7 @@
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!
-//! The files depend on each other in one direction: `step → {limit, certified} → writer → {actions, solved} → factor → relations → {basis
+//! The files depend on each other in one direction: `step → {limit, certified, tangent} → writer → {actions, solved} → factor → relations → {basis
 //! → linear, matrix → values}`.
 
 mod actions;
@@ -23,6 +23,7 @@ mod matrix;
 mod relations;
 mod solved;
 mod step;
+mod tangent;
 mod values;
 mod writer;
 

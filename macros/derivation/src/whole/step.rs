@@ -199,6 +199,17 @@ impl WholeStep {
         };
         Ok(Self { sizes, factors: writer.factors, programs })
     }
+
+    /// Writes the tangent map of a step along one direction: `(ζ⁺, δμ⁺)` after the step, of half, momentum, advected and
+    /// constants, for a displacement `ζ` in the array of velocities and a change `δμ` in that of histories.
+    ///
+    /// # Errors
+    ///
+    /// The reason why there is no step.
+    pub fn tangent(staged: &StagedDeclaration) -> Result<Program, StepRefusal> {
+        let Self { programs, .. } = Self::of(staged)?;
+        Ok(Writer::of(staged)?.tangent(&programs.target, &programs.finish))
+    }
 }
 
 impl Writer<'_> {

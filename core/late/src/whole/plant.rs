@@ -1,0 +1,110 @@
+//! A declaration's stepper as the plant of a control problem.
+
+use liestep::gradients::{Both, Plant};
+use liestep::motion::Propagator as _;
+use liestep::{SetupError, StepError};
+use nalgebra::DMatrix;
+
+use super::algebra::{adjoint, displaced, displacement, tangent};
+use super::stepper::Whole;
+use super::tangent::TangentCode;
+use crate::code::Backend;
+
+/// An attitude has the matrices of its factors, row by row; an input is a force in the body frame, or empty.
+impl<B: Backend<f64>> Plant for Whole<B> {
+    type State = Box<[f64]>;
+    type Motion = [f64];
+    type Attitude = Vec<f64>;
+    type Vector = Vec<f64>;
+    type Input = Vec<f64>;
+
+    fn dimension(&self) -> usize {
+        self.codes.sizes.n
+    }
+
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn of_length(&self, h: f64) -> Option<Self> {
+        self.with(&self.numbers, h).ok()
+    }
+
+    fn check(&self) -> Result<(), SetupError> {
+        let cause = "has no derivatives of steps as long as this one";
+        TangentCode::<B>::of(self.declaration()).map(|_| ()).map_err(|_| SetupError::Method { cause })
+    }
+
+    fn free(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    fn force(&self) -> Vec<f64> {
+        vec![0.0; self.codes.sizes.n]
+    }
+
+    fn motion(state: &Box<[f64]>) -> &[f64] {
+        state
+    }
+
+    fn components(vector: &Vec<f64>) -> Vec<f64> {
+        vector.clone()
+    }
+
+    fn numbers(input: &Vec<f64>) -> Vec<f64> {
+        input.clone()
+    }
+
+    fn with_numbers(input: &Vec<f64>, numbers: &[f64]) -> Vec<f64> {
+        input.iter().zip(numbers).map(|(_, number)| *number).collect()
+    }
+
+    fn adopt(&self, state: &Box<[f64]>) -> Box<[f64]> {
+        liestep::motion::Propagator::adopt(self, state)
+    }
+
+    fn step(&self, state: &mut Box<[f64]>, force: &Vec<f64>) -> Result<(), StepError> {
+        if force.is_empty() {
+            return liestep::motion::Propagator::step(self, state).map(|_| ());
+        }
+        self.step_forced(state, force).map(|_| ())
+    }
+
+    fn transition(&self, state: &mut Box<[f64]>, force: &Vec<f64>) -> Result<Both, StepError> {
+        let none = self.force();
+        let found = Self::transition(self, state, if force.is_empty() { &none } else { force })?;
+        Ok([found.by_state, if force.is_empty() { Vec::new() } else { found.by_force }])
+    }
+
+    fn displaced(&self, state: &Box<[f64]>, change: &[f64]) -> Option<Box<[f64]>> {
+        let layout = self.layout();
+        let (xi, change) = change.split_at_checked(self.codes.sizes.n)?;
+        let attitude = displaced(&self.codes.factors, state.get(layout.attitude())?, xi);
+        let momentum = state.get(layout.momentum())?.iter().zip(change).map(|(momentum, change)| momentum + change);
+        self.start_with_momentum(&attitude, &momentum.collect::<Vec<f64>>()).ok()
+    }
+
+    fn displacement(&self, from: &Vec<f64>, to: &Box<[f64]>) -> Option<Vec<f64>> {
+        let to = to.get(self.layout().attitude())?;
+        if from.len() == to.len() { displacement(&self.codes.factors, from, to) } else { None }
+    }
+
+    fn displacement_slopes(&self, from: &Vec<f64>, to: &Box<[f64]>) -> Option<Both> {
+        let (n, xi) = (self.codes.sizes.n, Plant::displacement(self, from, to)?);
+        Some([tangent(&self.codes.factors, &xi)?, DMatrix::<f64>::identity(n, n).as_slice().to_vec()])
+    }
+
+    fn attitude(&self, state: &Box<[f64]>) -> Vec<f64> {
+        state.get(self.layout().attitude()).map_or_else(Vec::new, <[f64]>::to_vec)
+    }
+
+    fn momentum(&self, state: &Box<[f64]>) -> Vec<f64> {
+        state.get(self.layout().momentum()).map_or_else(Vec::new, <[f64]>::to_vec)
+    }
+
+    fn bracket_transpose(&self, xi: &[f64], momentum: &[f64]) -> Vec<f64> {
+        let transposed =
+            |ad: DMatrix<f64>| ad.tr_mul(&nalgebra::DVector::from_column_slice(momentum)).as_slice().to_vec();
+        adjoint(&self.codes.factors, xi).map_or_else(|| vec![f64::NAN; momentum.len()], transposed)
+    }
+}
