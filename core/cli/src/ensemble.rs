@@ -151,7 +151,7 @@ fn plan<M: Rotating + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, members
         }
     });
     // A quaternion and its opposite are the same attitude, so means of them have no meaning.
-    for (column, place, name) in columns(scene).filter(|(column, ..)| column.key() != "quaternion") {
+    for (column, place, name) in columns(scene).filter(|(.., name)| !name.starts_with("q_")) {
         let own = Arc::clone(&own);
         plan = plan.reduce(name, Reduction::Moments, move |run| {
             let numbers = own.numbers(std::slice::from_ref(&column), &Moment::of_step(run.stepper, run.state));

@@ -1,10 +1,13 @@
 //! Scenes on any group: orders, momenta and defects, and starts.
 
+use std::fs;
+
 use liestep::groups::{Heisenberg, LieGroup, SE2, SE3, SL2, SO2, SO3, SU2};
 use liestep::numbers::{Coordinates, Entries};
 use liestep_scene::Sample;
 use nalgebra::{DMatrix, DVector};
 
+use crate::called::{folder, printed};
 use crate::reference::{
     Generators, Reference, affine, apart, assert_orders, blocks, drifts, in_space, last, metric, moving, of_traces,
     one, orthogonal, poses, product, second, special_linear, symplectic, turns, velocity, written,
@@ -195,4 +198,63 @@ velocity = [0.1, 0.2, 3, 0, 1, 0]
     let momentum = &same.samples()[0].numbers[22..28];
     let by_momentum = text.replace("velocity = [0.1, 0.2, 3, 0, 1, 0]", &format!("momentum = {momentum:?}"));
     assert!(apart(&last(&second(&by_momentum, "", 100)).numbers, &last(&same).numbers) < 1e-12);
+}
+
+/// Effects of the library beside a kinetic energy of the file's own, and a potential of its own beside a body, by a splitting
+/// and for an accuracy: the motion of the library's body and gravity.
+#[test]
+fn texts_beside_the_library() {
+    const BODY: &str = "[body]\nmoments = [3, 3, 4]\n";
+    const KINETIC: &str = "[lagrangian]\nl_d = \"((F - I) * J_d * (F - I).transpose()).trace() / (2 * h)\"\n\
+                           J_d = { moments = [3, 3, 4] }\n";
+    const GRAVITY: &str = "[gravity]\nm = 1\ng = 9.81\nrho = [0, 0, 1]\nup = [0, 0, 1]\n";
+    const POTENTIAL: &str = "[[lagrangian]]\nadvected = { w = \"up\" }\nl_d = \"-0.5 * h * m * g * w.dot(&(rho + F * rho))\"\n\
+                             m = 1\ng = 9.81\nrho = [0, 0, 1]\nup = [0, 0, 1]\n";
+    const START: &str = "[start]\neuler = [0, \"45 deg\", 0]\nvelocity = [0.1, 0, 6]\n";
+    let scene = |terms: [&str; 2], run: &str| {
+        let text = format!("title = \"top\"\n{}{}{START}[run]\nduration = 1\n{run}", terms[0], terms[1]);
+        last(&one(&text).run().unwrap()).numbers.clone()
+    };
+    let kinetic = KINETIC.replace("[lagrangian]", "[[lagrangian]]");
+    for (run, tolerance) in
+        [("step = 0.01\n", 1e-13), ("step = 0.01\nmethod = { composition = \"Suzuki 4\" }\n", 1e-12)]
+    {
+        let library = scene([BODY, GRAVITY], run);
+        for terms in [[KINETIC, GRAVITY], [BODY, POTENTIAL], [&kinetic, POTENTIAL]] {
+            assert!(apart(&scene(terms, run), &library) < tolerance, "{run}{terms:?}");
+        }
+    }
+    let exact = scene([BODY, GRAVITY], "accuracy = 1e-10\n");
+    let splitting = "step = 0.01\nmethod = { splitting = \"Nyström 6-4\" }\n";
+    assert!(apart(&scene([BODY, POTENTIAL], splitting), &exact) < 1e-8);
+    for terms in [[BODY, POTENTIAL], [&kinetic, POTENTIAL], [KINETIC, GRAVITY]] {
+        assert!(apart(&scene(terms, ""), &exact) < 2e-5, "{terms:?}");
+    }
+}
+
+/// A sweep, an ensemble, a page and a table of events of a scene on another group.
+#[test]
+fn a_scene_on_a_group_is_one_as_any_other() {
+    let folder = folder("groups");
+    let text = format!(
+        "{}[[event]]\nname = \"low\"\ncolumn = \"g_34\"\nvalue = 0\n[output]\ncolumns = [\"velocity\", \"energy\", \"defect\"]\n\
+         [ensemble]\nmembers = 4\ndraw.lagrangian.g = {{ from = 9, to = 10 }}\n\
+         draw.start.velocity = [0.1, 0.2, {{ mean = 3, deviation = 0.1 }}, 0, 1, 0]\n\
+         [sweep]\nlagrangian.g = [9, 10]\nstart.position = [[0, 0, 1], [0, 0, 9]]\n",
+        include_str!("scenes/pose.toml")
+    );
+    fs::write(folder.join("pose.toml"), text).unwrap();
+    let told = printed(&folder, &["ensemble", "pose.toml", "--out", "."]);
+    assert!(told.contains("4 finished, 0 broke down") && told.contains("low: in 4 of 4"), "{told}");
+    printed(&folder, &["sweep", "pose.toml", "--out", "."]);
+    let sweep = fs::read_to_string(folder.join("pose.sweep.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = sweep.lines().map(|line| line.split(',').collect()).collect();
+    // The height of the start moves the events and the energy, and nothing else.
+    assert!(rows.len() == 5 && rows[1][3..9] == rows[2][3..9] && rows[1][3..9] != rows[3][3..9], "{sweep}");
+    assert!(rows[0][13] == "low_times" && rows[1][13] == "1.0" && rows[2][13] == "0.0", "{sweep}");
+    printed(&folder, &["run", "pose.toml", "--csv", "--html", "--arrow", "--out", "."]);
+    let [page, events] =
+        ["html", "events.csv"].map(|end| fs::read_to_string(folder.join(format!("pose.{end}"))).unwrap());
+    assert!(page.contains("attitudes: \"\",") && page.contains("\"Velocity of the body\""));
+    assert!(events.starts_with("event,rising,t,velocity_1,") && events.contains("\nlow,0,0.7"), "{events}");
 }
