@@ -156,7 +156,7 @@ impl<'a, M: Plant> Estimate<'a, M> {
         }
         let inputs = vec![self.given(); self.steps];
         let mut trial = self
-            .trial(self.start.clone(), inputs, DVector::from_column_slice(&self.constants))
+            .trial(&self.start, inputs, DVector::from_column_slice(&self.constants))
             .map_err(|(step, error)| ControlError::Step(step, error))?
             .ok_or(ControlError::Unusable("reading"))?;
         let (mut damping, mut iterations) = (0.0, 0);
@@ -212,17 +212,17 @@ impl<'a, M: Plant> Estimate<'a, M> {
     /// The trial of these unknowns, if stepper, coordinates and finite squares exist there.
     fn trial(
         &self,
-        start: M::State,
+        start: &M::State,
         inputs: Vec<DVector<f64>>,
         constants: DVector<f64>,
     ) -> Result<Option<Trial<M>>, (usize, liestep::StepError)> {
         let Some(model) = self.model(&constants) else { return Ok(None) };
-        let states = model.run(&start, &inputs)?;
+        let states = model.run(start, &inputs)?;
         let read = |(step, state): (usize, &M::State)| {
             DVector::from_vec((self.readings)(step, M::motion(state), constants.as_slice()))
         };
         let readings: Vec<_> = states.iter().enumerate().map(read).collect();
-        let Some(away) = away(&model.stepper, &self.start, &start) else { return Ok(None) };
+        let Some(away) = away(&model.stepper, &self.start, start) else { return Ok(None) };
         let away = DVector::from_iterator(
             model.states(),
             away.iter().copied().chain(constants.iter().zip(&self.constants).map(|(now, guess)| now - guess)),
@@ -299,7 +299,7 @@ impl<'a, M: Plant> Estimate<'a, M> {
             let inputs = trial.inputs.iter().zip(&solution.inputs).map(|(now, change)| now + change).collect();
             let constants = &trial.constants + change.rows(change.len() - trial.constants.len(), trial.constants.len());
             let start = displaced(&trial.model.stepper, &trial.states[0], change);
-            let better = start.and_then(|start| self.trial(start, inputs, constants).ok().flatten());
+            let better = start.and_then(|start| self.trial(&start, inputs, constants).ok().flatten());
             if let Some(better) = better.filter(|better| better.squares <= trial.squares + rounding) {
                 *damping = if *damping < 1e-6 { 0.0 } else { 0.1 * *damping };
                 return Some(better);

@@ -32,6 +32,11 @@ fn a_plan_of_a_text_is_that_of_the_stepper() {
     }
 }
 
+/// The entries of a matrix that aren't zero.
+type Matrix = [(usize, usize, f64)];
+/// Name, rows, generators, metric, the direction of a motion, and its inertia.
+type Case<'a> = (&'a str, usize, &'a [&'a Matrix], &'a [f64], usize, f64);
+
 /// A group by its generators, and a metric `tr(E J Eᵀ)`.
 struct Free {
     stepper: Whole,
@@ -39,9 +44,9 @@ struct Free {
 }
 
 impl Free {
-    fn on(n: usize, generators: &[&[(usize, usize, f64)]], h: f64, diagonal: &[f64]) -> Self {
+    fn on(n: usize, generators: &[&Matrix], h: f64, diagonal: &[f64]) -> Self {
         let row = |row: &[f64]| format!("{row:?}");
-        let matrix = |entries: &&[(usize, usize, f64)]| {
+        let matrix = |entries: &&Matrix| {
             let mut matrix = vec![0.0; n * n];
             entries.iter().for_each(|&(i, j, entry)| matrix[i * n + j] = entry);
             format!("[{}]", matrix.chunks(n).map(row).collect::<Vec<_>>().join(", "))
@@ -66,7 +71,7 @@ impl Free {
     }
 }
 
-fn rotations_of_four() -> [&'static [(usize, usize, f64)]; 6] {
+fn rotations_of_four() -> [&'static Matrix; 6] {
     [
         &[(0, 1, -1.0), (1, 0, 1.0)],
         &[(0, 2, -1.0), (2, 0, 1.0)],
@@ -80,8 +85,8 @@ fn rotations_of_four() -> [&'static [(usize, usize, f64)]; 6] {
 /// The least effort from rest to rest along a one-parameter group with the inertia `J` is `6 J² θ²/T³`.
 #[test]
 fn the_least_effort_on_groups_of_texts() {
-    let plane: [&[(usize, usize, f64)]; 3] = [&[(1, 0, 1.0), (0, 1, -1.0)], &[(0, 2, 1.0)], &[(1, 2, 1.0)]];
-    let cases: [(&str, usize, &[&[(usize, usize, f64)]], &[f64], usize, f64); 3] = [
+    let plane: [&Matrix; 3] = [&[(1, 0, 1.0), (0, 1, -1.0)], &[(0, 2, 1.0)], &[(1, 2, 1.0)]];
+    let cases: [Case<'_>; 3] = [
         ("a rotation of four dimensions", 4, &rotations_of_four(), &[1.0; 4], 0, 2.0),
         ("a translation of the plane", 3, &plane, &[1.0, 1.0, 3.0], 1, 3.0),
         ("a turn of the plane", 3, &plane, &[1.0, 1.0, 3.0], 0, 2.0),
