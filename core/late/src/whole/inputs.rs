@@ -29,7 +29,7 @@ impl<B: Backend<f64>> Whole<B> {
     ///
     /// # Errors
     ///
-    /// The errors of [`step`](Propagator::step); [`StepError::NonFinite`] if the numbers can't be used.
+    /// The errors of [`step`](liestep::motion::Propagator::step); [`StepError::NonFinite`] if the numbers can't be used.
     pub fn step_with(&self, state: &mut [f64], numbers: &[f64]) -> Result<StepReport, StepError> {
         let mut next = self.checked(state)?.to_vec();
         let driven =
@@ -46,7 +46,7 @@ impl<B: Backend<f64>> Whole<B> {
     ///
     /// # Errors
     ///
-    /// The errors of [`step`](Propagator::step); [`StepError::NonFinite`] for a force that isn't finite.
+    /// The errors of [`step`](liestep::motion::Propagator::step); [`StepError::NonFinite`] for a force that isn't finite.
     ///
     /// # Source
     ///

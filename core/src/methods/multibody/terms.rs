@@ -3,7 +3,7 @@
 use alloc::string::String;
 use alloc::sync::Arc;
 
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Matrix6, SimdComplexField as _, Vector6};
 
 use super::part::BodyPart;
 use super::{Body, Increment};
@@ -115,7 +115,7 @@ impl<E: Effect<Scalar = f64>> Folded<E> {
         }
         // For R = Dⁿ r with D = 1 + |y|² the derivative of r is R'/Dⁿ − (2n/D) r yᵀ.
         let d = half.dot(half) + 1.0;
-        let below = 1.0 / d.powi(power.cast_signed());
+        let below = 1.0 / d.simd_powi(power.cast_signed());
         let residual = residual * below;
         (residual, jacobian * below + residual.outer(half) * (-2.0 * f64::from(power) / d))
     }
@@ -125,7 +125,7 @@ impl<E: Effect<Scalar = f64>> Folded<E> {
         let residual = E::newton_residual(&self.constants, &terms, half);
         match E::denominators(&self.constants) {
             0 => residual,
-            power => residual * (1.0 / (half.dot(half) + 1.0).powi(power.cast_signed())),
+            power => residual * (1.0 / (half.dot(half) + 1.0).simd_powi(power.cast_signed())),
         }
     }
 }
