@@ -61,7 +61,7 @@ pub struct UsualStep<'a, C> {
 }
 
 impl<'a, C> UsualStep<'a, C> {
-    /// The same step with other code for each program.
+    /// This step with other code for each program.
     #[must_use]
     pub fn map<D>(&self, other: impl Fn(&'a C) -> &'a D) -> UsualStep<'a, D> {
         UsualStep {

@@ -121,7 +121,7 @@ fn an_orbit_by_its_pace() {
             assert_eq!(stepper.step(&mut state), whole.step(&mut slice), "step {step}");
             let now = state.attitude().translation();
             assert_eq!(now, place(&slice), "step {step}");
-            // With the centre in a focus: r = (1 − e²)/(1 + e cos θ).
+            // Kepler's ellipse has the centre in a focus: r = (1 − e²)/(1 + e cos θ).
             let apart = now.norm() + ECCENTRICITY * now.x - (1.0 - ECCENTRICITY * ECCENTRICITY);
             farthest = farthest.max(apart.abs());
         }

@@ -48,7 +48,7 @@ fn bits(state: &[f64]) -> Vec<u64> {
     state.iter().map(|number| if number.is_nan() { u64::MAX } else { number.to_bits() }).collect()
 }
 
-/// What a comparison has seen.
+/// The counts of a comparison.
 #[derive(Debug, Default)]
 struct Seen {
     steps: u32,

@@ -10,13 +10,15 @@ use crate::mechanics::{Group, SecondDerivatives, Vector};
 use crate::motion::{Motion, StateOf, Stepper};
 use crate::numbers::{Coordinates, Entries};
 
-/// The columns of `∂x⁺/∂x` and of `∂x⁺/∂u`, or the gradients by `x` and `u`.
+/// Two lists of numbers: the columns of `∂x⁺/∂x` and of `∂x⁺/∂u`, one after the other, each of `2n` numbers; or the gradients
+/// by `x` and by `u`.
 pub type Both = [Vec<f64>; 2];
 
 /// A stepper with inputs, whose steps have derivatives in flat coordinates: the plant of a control problem.
 ///
 /// A change `x` of a state has `2n` numbers on a group of `n` dimensions: a displacement `ζ`, by which the attitude `g` becomes
-/// `g exp ζ̂`, and a change of the momentum in the body frame. A [`Stepper`] of a scene with derivatives is a plant, and so
+/// `g exp ζ̂`, on SO(3) in rad about the body's axes, and a change of the momentum in the body frame, on SO(3) in kg m²/s. Steps
+/// are those of (2.7) and (2.9). A [`Stepper`] of a scene with derivatives is a plant, and so
 /// is a declaration that is derived at run time.
 pub trait Plant: Clone {
     /// The state of the stepper.
@@ -36,7 +38,7 @@ pub trait Plant: Clone {
     /// The step `h`, s.
     fn step_size(&self) -> f64;
 
-    /// The same scene and method by another step; none if it can't be used.
+    /// The plant of this scene and method by the step `h`, s; none if it can't be used.
     fn of_length(&self, h: f64) -> Option<Self>;
 
     /// Checks that steps have derivatives.
@@ -49,7 +51,7 @@ pub trait Plant: Clone {
     /// No input.
     fn free(&self) -> Self::Input;
 
-    /// A control force of zero.
+    /// A control force of zero, along all `n` components.
     fn force(&self) -> Self::Input;
 
     /// The motion of a state.
@@ -106,7 +108,7 @@ pub trait Plant: Clone {
     /// The attitude of a state.
     fn attitude(&self, state: &Self::State) -> Self::Attitude;
 
-    /// The components of the momentum of a state, in the body frame.
+    /// The `n` components of the momentum of a state, in the body frame, on SO(3) in kg m²/s.
     fn momentum(&self, state: &Self::State) -> Vec<f64>;
 
     /// `ad*_ξ μ` by components, for which `⟨ad*_ξ μ, η⟩ = ⟨μ, [ξ, η]⟩`.

@@ -42,8 +42,8 @@ impl Register for Plain {
 pub(crate) trait OnRegisters {
     type Output;
 
-    /// Runs the computation with registers of the type of `zero`; Closures in it would be compiled without the vector
-    /// instructions.
+    /// Runs the computation with registers of the type of `zero`. An implementation is marked `#[hot]`, as are the functions
+    /// that it calls; closures in it would be compiled without the vector instructions.
     fn run<R: Register>(self, zero: R) -> Self::Output;
 }
 

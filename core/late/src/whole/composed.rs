@@ -98,11 +98,7 @@ impl Stages {
         state: &mut [f64],
         room: &mut [f64],
     ) -> Result<u32, StepError> {
-        if self.list.is_empty() {
-            numbered.step(self.first(), state, room)
-        } else {
-            self.compose(numbered, state, room, &mut |_, _| ())
-        }
+        self.watched(numbered, state, room, &mut |_, _| ())
     }
 
     /// One step, whose stages are watched: `watch` gets the constants of each and the state before it, and then after it.
@@ -113,22 +109,12 @@ impl Stages {
         room: &mut [f64],
         watch: &mut impl FnMut(&StepConstants, &[f64]),
     ) -> Result<u32, StepError> {
-        if !self.list.is_empty() {
-            return self.compose(numbered, state, room, watch);
+        if self.list.is_empty() {
+            watch(self.first(), state);
+            let iterations = numbered.step(self.first(), state, room)?;
+            watch(self.first(), state);
+            return Ok(iterations);
         }
-        watch(self.first(), state);
-        let iterations = numbered.step(self.first(), state, room)?;
-        watch(self.first(), state);
-        Ok(iterations)
-    }
-
-    fn compose<B: Backend<f64>>(
-        &self,
-        numbered: Numbered<'_, B>,
-        state: &mut [f64],
-        room: &mut [f64],
-        watch: &mut impl FnMut(&StepConstants, &[f64]),
-    ) -> Result<u32, StepError> {
         let sizes = &numbered.codes.sizes;
         let (next, room) = room.split_at_mut(state.len());
         let (earlier, room) = room.split_at_mut(sizes.n);

@@ -3,7 +3,7 @@
 //! [`Whole`] is one stepper for all declarations that are texts. The derivation writes a step as straight-line programs,
 //! from the generators of the group alone; this room runs them, compares numbers and decides: how often to iterate, whether
 //! a Jacobian serves twice, whether a solution continues the identity, when rounding errors are taken back. It knows no
-//! group.
+//! group; only the coordinates of small changes, for plans and estimates, know rotations.
 //!
 //! # Invariants
 //!

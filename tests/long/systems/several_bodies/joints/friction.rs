@@ -158,7 +158,7 @@ fn a_loop_with_friction_comes_to_rest() {
     let ratio = apart(&ends[0].0, &ends[1].0) / apart(&ends[1].0, &ends[2].0);
     println!("{ratio}");
     assert!((ratio - 4.0).abs() < 0.1, "{ratio}");
-    // It swings across its plane for long, less and less.
+    // The swing across the plane decays slowly.
     let fastest = [5000, 10_000].map(|steps| of(0.01, steps).2.iter().map(Vector6::amax).fold(0.0, f64::max));
     println!("{fastest:?}");
     assert!(fastest[0] < 0.1 && fastest[1] < 0.01 * fastest[0], "{fastest:?}");
