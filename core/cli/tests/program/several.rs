@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use liestep::groups::R3;
-use liestep::methods::{BallJoint, Multibody, PinJoint};
+use liestep::methods::{Joint, Multibody};
 use liestep::prelude::*;
 use liestep_scene::{BodySample, Sample, Scene, System};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
@@ -72,9 +72,9 @@ fn a_file_is_what_a_program_makes() {
     bodies.body(by_3_13(first, 1.5));
     bodies.body(by_3_13(second, 700.0 * 1e-3));
     let axis = Vector3::x();
-    let pivot = PinJoint { above: Vector3::zeros(), below: up * 0.5, axis_above: axis, axis_below: axis };
+    let pivot = Joint::pin([Vector3::zeros(), up * 0.5], [axis; 2]);
     bodies.join(pivot, None, 0);
-    bodies.join(BallJoint { above: up * -0.5, below: axis * -0.3 }, Some(0), 1);
+    bodies.join(Joint::ball([up * -0.5, axis * -0.3]), Some(0), 1);
     let stepper = bodies.stepper(5.0 * 1e-3).unwrap();
     let place = |x: f64, z: f64| (SO3::from(UnitQuaternion::identity()), R3::from(Vector3::new(x, 0.0, z)));
     let moving = |y: f64| Vector6::new(1.0, 0.0, 0.0, 0.0, y, 0.0);

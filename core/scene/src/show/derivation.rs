@@ -115,7 +115,7 @@ impl SceneFile {
     }
 }
 
-/// The constraints of joints, as in the documentation of `BallJoint` and `PinJoint`.
+/// The constraints of joints, as in the documentation of `liestep::methods::Joint`.
 const BALLS: &str =
     "joints from a body a, or space, to a body b: x_b + R_b ρ_b − x_a − R_a ρ_a = 0 at both ends of a step\n";
 const PINS: &str = "pins, with e_1 and e_2 across the axis n_a: R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0, too\n";
@@ -129,7 +129,7 @@ impl System {
         let springs = if has(true) { Coil::DERIVATION } else { "" };
         let cords = if has(false) { Cord::DERIVATION } else { "" };
         let joints = if self.joints.is_empty() { "" } else { BALLS };
-        let pins = if self.has_pins() { PINS } else { "" };
+        let pins = if self.has_cosines() { PINS } else { "" };
         format!("{}{gravity}{springs}{cords}{joints}{pins}", Heavy::DERIVATION)
     }
 }
