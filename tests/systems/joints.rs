@@ -2,7 +2,7 @@
 //! of joints that the others imply.
 
 use declarations::{FallingBody, FloatingBody};
-use liestep::effects::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
+use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 use liestep::groups::{LieGroup as _, R3};
 use liestep::methods::{Joint, Multibody, MultibodyStepper};
 use liestep::{NonstandardInertia, SO3, SetupError, StepError};
@@ -106,7 +106,7 @@ fn a_porch_swing_on_four_pins() {
     assert_second_order(off);
 }
 
-/// Two shafts whose axes meet at 30 degrees turn together by a cross on four pins: `tan θ_1 = tan θ_2 cos β`, with three implied
+/// Two shafts whose axes meet at 30 degrees turn together by a cross on four pins: `tan θ_2 = tan θ_1 cos β`, with three implied
 /// functions.
 #[test]
 fn a_cardan_joint() {
@@ -146,11 +146,7 @@ fn a_cardan_joint() {
         stepper.step(&mut state).unwrap();
         let theta = angle(&state, input, &first, &Vector3::z());
         let phi = angle(&state, output, &second, &Vector3::z());
-        off = off.max(
-            (theta.sin() * phi.cos() * 1.0 - bend.cos() * phi.sin() * theta.cos())
-                .abs()
-                .min((phi.sin() * theta.cos() - bend.cos() * theta.sin() * phi.cos()).abs()),
-        );
+        off = off.max((phi.sin() * theta.cos() - bend.cos() * theta.sin() * phi.cos()).abs());
         let ratio = stepper.velocity(&state, output).norm() / stepper.velocity(&state, input).norm();
         spread = [spread[0].min(ratio), spread[1].max(ratio)];
     }
@@ -174,7 +170,7 @@ fn a_cart_and_a_pole() {
         [(d * f - b * g) / determinant, (a * g - b * f) / determinant]
     };
     let ([x, angle], _) = solved(acceleration, ([0.0, 0.3], [0.1, 0.0]), 1.5);
-    let off = [0.01, 0.005].map(|h: f64| {
+    let off = [0.005, 0.0025].map(|h: f64| {
         let mut system = Multibody::new();
         let (base, pole) = (system.body(falling(cart, [1.0; 3])), system.body(falling(m, [moment, moment, 0.001])));
         let (zero, up) = (Vector3::zeros(), Vector3::z() * half);
@@ -188,7 +184,8 @@ fn a_cart_and_a_pole() {
         stepper.run(&mut state, (1.5 / h).round() as u64).unwrap();
         let end = position(&stepper, &state, pole) - position(&stepper, &state, base);
         assert!(stepper.widest_gap(&state) < 1e-13);
-        (position(&stepper, &state, base).x - x).hypot(end.x.atan2(end.z) - angle)
+        let turned = SO3::exp(Vector3::y() * angle).as_matrix() * up;
+        (position(&stepper, &state, base).x - x).hypot((end - turned).norm())
     });
     assert_second_order(off);
 }
@@ -359,8 +356,6 @@ fn a_function_that_is_implied_at_the_start_alone() {
     // The left rod turns alone, and the seat follows.
     let velocities = [turning(1.0, -0.5), turning(0.3, -0.15), turning(0.0, -0.65)];
     let mut state = stepper.start_nearest(&places, &velocities).unwrap();
-    let stopped = stepper.run(&mut state, 1000).unwrap_err();
-    println!("{stopped:?}");
-    assert!(format!("{stopped:?}").contains("SingularJoint"));
-    let _: Option<StepError> = None;
+    let stopped = (0..1000).find_map(|_| stepper.step(&mut state).err());
+    assert!(matches!(stopped, Some(StepError::SingularJoint { joint: 3, .. })), "{stopped:?}");
 }

@@ -1,4 +1,14 @@
-//! Springs, friction, torques and forces in joints, between two bodies.
+//! Springs, friction and motors in the joints of a [`Multibody`](crate::methods::Multibody) system: terms
+//! [between](crate::methods::Multibody::between) two bodies, or between space and a body.
+//!
+//! | turns | shifts in a slider | |
+//! |---|---|---|
+//! | [`JointSpring`] | [`SliderSpring`] | energies `½ k θ²`, `½ k (s − l)² − f s` |
+//! | [`JointDamping`] | [`SliderDamping`] | viscous friction, `−c ω` and `−c v` |
+//! | [`DryFriction`] | | `−τ ω/√(|ω|² + v²)` |
+//! | [`JointTorque`] | | a motor's constant torque |
+//!
+//! Friction couples the steps of its bodies, so that no coefficient is too large for a step; springs and motors are kicks.
 
 use nalgebra::{Matrix3, Vector3};
 

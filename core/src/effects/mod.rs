@@ -60,11 +60,7 @@
 //! | [`Thrust`] | of a force that is constant in the body, at a point of it |
 //! | [`Torque`] | constant in the body |
 //!
-//! | between two bodies of a [`Multibody`](crate::methods::Multibody) system | |
-//! |---|---|
-//! | [`JointSpring`], [`SliderSpring`] | energies `½ k θ²`, `½ k (s − l)² − f s` |
-//! | [`JointDamping`], [`DryFriction`], [`JointTorque`] | torques `−c ω`, `−τ ω/√(|ω|² + v²)`, constant |
-//! | [`SliderDamping`] | a force `−c v` |
+//! Springs, friction and motors in [`joints`] are terms between two bodies.
 //!
 //! A torque that is prescribed step by step isn't an effect but an argument of the step:
 //! [`Stepper::step_forced`](crate::motion::Stepper::step_forced).
@@ -76,7 +72,7 @@ mod geodesic_body;
 mod gravity;
 mod gravity_gradient;
 mod higher_order_body;
-mod joints;
+pub mod joints;
 mod magnetic_damping;
 mod rigid_body;
 mod rotor;
@@ -91,7 +87,6 @@ pub use geodesic_body::GeodesicBody;
 pub use gravity::Gravity;
 pub use gravity_gradient::GravityGradient;
 pub use higher_order_body::{FourthOrderBody, SixthOrderBody};
-pub use joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 pub use magnetic_damping::MagneticDamping;
 pub use rigid_body::{PrincipalBody, RigidBody};
 pub use rotor::Rotor;

@@ -4,6 +4,7 @@ mod called;
 mod conventions;
 mod ensembles;
 mod groups;
+mod joints;
 mod judged;
 mod lagrangian;
 mod mutated;

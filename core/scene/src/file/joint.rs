@@ -46,6 +46,13 @@ pub(crate) struct Terms {
     pub(crate) friction: Option<[f64; 2]>,
 }
 
+impl Terms {
+    /// Whether a slider has a spring, or a motor, which is a part of the same term.
+    pub(crate) fn has_spring(&self) -> bool {
+        self.stiffness.is_some() || self.effort.is_some()
+    }
+}
+
 /// Angle, rad, and shift, m, of a joint, and their rates.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Coordinates {
@@ -70,6 +77,9 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
+    pub(crate) const ALL: [Self; 8] =
+        [Self::Ball, Self::Pin, Self::Universal, Self::Weld, Self::Cylinder, Self::Slider, Self::Plane, Self::Distance];
+
     fn name(self) -> &'static str {
         match self {
             Self::Ball => "ball joint",

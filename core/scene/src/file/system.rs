@@ -234,6 +234,12 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     if bodies.is_empty() {
         return Err((0..0, "a system has a body at least".to_owned()));
     }
+    let called: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
+    let columns = table.output.columns(&Column::of_several_bodies(), &["position", "quaternion", "energy", "gap"])?;
+    if let Some((body, name)) = name_twice(&columns, &called) {
+        let message = format!("two columns of the table would be called `{name}`: give the body another name");
+        return Err((names[body].clone(), message));
+    }
     let joints = table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies));
     let (joints, coordinates): (Vec<_>, Vec<_>) = joints.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
     let (placing, unplaced) = place(&mut bodies, &mut is_placed, &joints);
@@ -246,12 +252,6 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     if let Some(span) = idle {
         let message = "both bodies of this joint have places already, so that it doesn't give one: leave this out, or `position` and `start` of one of them";
         return Err((span, message.to_owned()));
-    }
-    let called: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
-    let columns = table.output.columns(&Column::of_several_bodies(), &["position", "quaternion", "energy", "gap"])?;
-    if let Some((body, name)) = name_twice(&columns, &called) {
-        let message = format!("two columns of the table would be called `{name}`: give the body another name");
-        return Err((names[body].clone(), message));
     }
     let springs = table.spring.into_iter().map(|spring| {
         let SpringTable { bodies: names, at, k, length } = spring.into_inner();

@@ -1,6 +1,6 @@
 //! The system of a file: its bodies, springs and joints.
 
-use liestep::effects::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
+use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
 use liestep::methods::{Multibody, MultibodyStepper, Redundancy};
@@ -132,7 +132,7 @@ fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) 
     let Joint { kind, at, axes, terms, .. } = *joint;
     if kind == Kind::Slider {
         let axis = axes[0];
-        if terms.stiffness.is_some() || terms.effort.is_some() {
+        if terms.has_spring() {
             // The shift is between the points of both bodies, that of the term from the first body's centre.
             let (k, rest) = (terms.stiffness.unwrap_or(0.0), terms.rest + axis.dot(&at[0]));
             system.between(bodies, SliderSpring { k, rest, force: terms.effort.unwrap_or(0.0), axis, at_2: at[1] });
