@@ -84,6 +84,13 @@ pub(crate) fn command() -> Command {
                 .group(ArgGroup::new("form").args(["latex", "rust", "c"]).requires("NAME")),
         )
         .subcommand(
+            Command::new("import")
+                .about("Writes a scene for each model of a robot, with what has no counterpart as comments")
+                .arg(files("Models of URDF"))
+                .arg(flag("floating", "The root link is a body that floats; without, it is space"))
+                .arg(out()),
+        )
+        .subcommand(
             Command::new("replay")
                 .about("Makes pages that play recorded runs, to be opened in a browser")
                 .arg(files("Tables that were written by `run --csv`"))

@@ -4,6 +4,7 @@ mod called;
 mod conventions;
 mod ensembles;
 mod groups;
+mod import;
 mod joints;
 mod judged;
 mod lagrangian;
