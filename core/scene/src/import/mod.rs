@@ -26,7 +26,8 @@ pub struct Import {
 
 /// Makes a scene of a model: a file of URDF.
 ///
-/// Its root link is space, unless the model `floats`: then the root is a body that starts at rest at the origin.
+/// Its root link is space, unless the model `floats` or has no joint that moves: then the root is a body that starts at rest at
+/// the origin.
 ///
 /// # Errors
 ///

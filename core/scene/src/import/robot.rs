@@ -49,6 +49,7 @@ pub(super) enum Connection {
     Pin(Vector3<f64>),
     Slider(Vector3<f64>),
     Plane(Vector3<f64>),
+    Ball,
     Free,
 }
 
@@ -83,7 +84,14 @@ const CREEP: f64 = 0.01;
 impl Robot {
     /// The scene; its root is a body if it `floats`, and space otherwise.
     pub(super) fn scene(mut self, floats: bool) -> Result<Import, Unsuitable> {
+        let without_mass = self.links.iter().filter(|link| link.mass.mass <= 0.0 && link.mass.inertia.amax() > 0.0);
+        let remarks =
+            without_mass.map(|link| format!("link {}: an inertia without a mass, counted as it is given", link.name));
+        let remarks: Vec<_> = remarks.collect();
+        self.remarks.extend(remarks);
         let mut groups = self.groups()?;
+        // A model of one body is that of a thing, not of a machine that stands somewhere.
+        let floats = floats || groups.len() == 1;
         let mut is_there = self.leaves(&groups, floats);
         if !floats && let Some(root) = is_there.first_mut() {
             *root = false;
@@ -257,14 +265,17 @@ impl Robot {
             Connection::Pin(axis) => ("pin", axis, "angle = 0\n"),
             Connection::Slider(axis) => ("slider", axis, "shift = 0\n"),
             Connection::Plane(axis) => ("plane", axis, ""),
+            Connection::Ball => ("ball", &Vector3::zeros(), ""),
             Connection::Fixed | Connection::Free => return,
         };
         let point = arm.frame.translation.vector - centre;
         let axis_above = arm.frame.rotation * axis;
         let _ = writeln!(text, "[[joint]] # {}", name.replace(char::is_control, " "));
         let _ = writeln!(text, "kind = \"{kind}\"\nbodies = [\"{above}\", \"{below}\"]");
-        let _ =
-            writeln!(text, "at = [{}, {}]\naxes = [{}, {}]", list(&point), list(&-own), list(&axis_above), list(axis));
+        let _ = writeln!(text, "at = [{}, {}]", list(&point), list(&-own));
+        if kind != "ball" {
+            let _ = writeln!(text, "axes = [{}, {}]", list(&axis_above), list(axis));
+        }
         let turn = arm.frame.rotation;
         if turn.angle() > 0.0 {
             let [w, x, y, z] = [turn.w, turn.i, turn.j, turn.k].map(written);

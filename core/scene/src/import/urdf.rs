@@ -134,10 +134,11 @@ fn joint(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Joint> {
         Some("revolute" | "continuous") => Connection::Pin(axis(node)?),
         Some("prismatic") => Connection::Slider(axis(node)?),
         Some("planar") => Connection::Plane(axis(node)?),
+        Some("spherical") => Connection::Ball,
         Some("floating") => Connection::Free,
         other => {
             let found = other.map_or("no `type`".to_owned(), |other| format!("the type `{other}`"));
-            let known = "`fixed`, `revolute`, `continuous`, `prismatic`, `planar`, `floating`";
+            let known = "`fixed`, `revolute`, `continuous`, `prismatic`, `planar`, `spherical`, `floating`";
             return Err((place(node), format!("the joint `{name}` has {found}, expected one of {known}")));
         }
     };
