@@ -108,7 +108,7 @@ fn joints_from_either_end() {
     );
     let [one, other] = [run(&straight), run(&turned)];
     let start = &one.samples()[0].bodies;
-    let [sine, cosine] = [0.3420201433256687, 0.9396926207859084];
+    let [sine, cosine] = [0.342_020_143_325_668_7, 0.939_692_620_785_908_4];
     let expected = [Vector3::new(0.5, 0.0, -0.2), Vector3::new(0.5 + 0.4 * sine, 0.0, -0.1 + 0.4 * cosine)];
     for body in 0..2 {
         assert!((start[body].position - expected[body]).amax() < 1e-15, "{}", start[body].position);

@@ -342,5 +342,5 @@ fn unique<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
         taken.insert(free.clone());
         free
     };
-    names.map(|one| name(one)).collect()
+    names.map(&mut name).collect()
 }
