@@ -69,7 +69,7 @@ fn assert_second_order([coarse, fine]: [f64; 2]) {
 #[test]
 fn a_porch_swing_on_four_pins() {
     let rod = falling(1.0, [0.083_333_3, 0.083_333_3, 0.001]);
-    let swing = |h: f64| {
+    let swing = |h: f64, steps: u64| {
         let mut system = Multibody::new();
         let (left, right) = (system.body(rod), system.body(rod));
         let seat = system.body(falling(1.0, [0.001, 0.083_333_3, 0.083_333_3]));
@@ -89,7 +89,7 @@ fn a_porch_swing_on_four_pins() {
         assert_eq!(left_out.iter().map(|one| (one.joint, one.functions)).collect::<Vec<_>>(), [(3, 3)]);
         let stepper = system.stepper(h).unwrap();
         let mut state = stepper.start(&places, &velocities).unwrap();
-        stepper.run(&mut state, (1.0 / h).round() as u64).unwrap();
+        stepper.run(&mut state, steps).unwrap();
         assert!(stepper.widest_gap(&state) < 1e-13);
         (position(&stepper, &state, left), position(&stepper, &state, seat))
     };
@@ -98,8 +98,8 @@ fn a_porch_swing_on_four_pins() {
     let expected = Vector3::new(-0.5 * angle.sin(), 0.0, -0.5 * angle.cos());
     // The values of a solver of order eight for the three bodies.
     assert!((expected - Vector3::new(0.063_246, 0.0, -0.495_984)).amax() < 1e-6, "{expected}");
-    let off = [0.01, 0.005].map(|h| {
-        let (rod, seat) = swing(h);
+    let off = [(0.01, 100), (0.005, 200)].map(|(h, steps)| {
+        let (rod, seat) = swing(h, steps);
         assert!((seat - (rod * 2.0 + Vector3::x() * 0.5)).amax() < 1e-13);
         (rod - expected).norm()
     });
@@ -170,7 +170,7 @@ fn a_cart_and_a_pole() {
         [(d * f - b * g) / determinant, (a * g - b * f) / determinant]
     };
     let ([x, angle], _) = solved(acceleration, ([0.0, 0.3], [0.1, 0.0]), 1.5);
-    let off = [0.005, 0.0025].map(|h: f64| {
+    let off = [(0.005, 300), (0.0025, 600)].map(|(h, steps)| {
         let mut system = Multibody::new();
         let (base, pole) = (system.body(falling(cart, [1.0; 3])), system.body(falling(m, [moment, moment, 0.001])));
         let (zero, up) = (Vector3::zeros(), Vector3::z() * half);
@@ -181,7 +181,7 @@ fn a_cart_and_a_pole() {
         let start = [at(0.0, 0.0, 0.0), (tilt, R3::from(tilt.as_matrix() * up))];
         let moving = six([0.0; 3], [0.1, 0.0, 0.0]);
         let mut state = stepper.start(&start, &[moving; 2]).unwrap();
-        stepper.run(&mut state, (1.5 / h).round() as u64).unwrap();
+        stepper.run(&mut state, steps).unwrap();
         let end = position(&stepper, &state, pole) - position(&stepper, &state, base);
         assert!(stepper.widest_gap(&state) < 1e-13);
         let turned = SO3::exp(Vector3::y() * angle).as_matrix() * up;
@@ -261,7 +261,7 @@ fn a_ball_joint_with_a_spring() {
     let axis = Unit::new_normalize(Vector3::new(1.0, -2.0, 0.5));
     let turn = |angle: f64| *Rotation3::from_axis_angle(&axis, angle).matrix();
     let rest = *Rotation3::new(Vector3::new(0.2, 0.7, -0.4)).matrix();
-    let off = [0.002, 0.001].map(|h: f64| {
+    let off = [(0.002, 5000), (0.001, 10_000)].map(|(h, steps)| {
         let mut system = Multibody::new();
         let body = system.body(floating(1.0, [J; 3]));
         system.join(Joint::ball([Vector3::zeros(); 2]), None, body);
@@ -269,7 +269,7 @@ fn a_ball_joint_with_a_spring() {
         let stepper = system.stepper(h).unwrap();
         let attitude = SO3::try_from(turn(start) * rest).unwrap();
         let mut state = stepper.start(&[(attitude, R3::identity())], &[Vector6::zeros()]).unwrap();
-        stepper.run(&mut state, (10.0 / h).round() as u64).unwrap();
+        stepper.run(&mut state, steps).unwrap();
         let expected = turn(start * (10.0 * (k / J).sqrt()).cos()) * rest;
         (stepper.attitude(&state, body).0.as_matrix() - expected).norm()
     });
@@ -303,7 +303,7 @@ fn a_damped_mass_on_a_slider() {
     let at_end = 2.5_f64;
     let phase = rate * at_end;
     let expected = centre + (1.0 - centre) * (-decay * at_end).exp() * (phase.cos() + decay / rate * phase.sin());
-    let off = [0.01, 0.005].map(|h: f64| {
+    let off = [(0.01, 250), (0.005, 500)].map(|(h, steps)| {
         let mut system = Multibody::new();
         let body = system.body(floating(m, [0.2; 3]));
         system.join(Joint::slider([Vector3::zeros(); 2], axis, Matrix3::identity()), None, body);
@@ -312,7 +312,7 @@ fn a_damped_mass_on_a_slider() {
         let stepper = system.stepper(h).unwrap();
         let start = (SO3::identity(), R3::from(axis));
         let mut state = stepper.start(&[start], &[Vector6::zeros()]).unwrap();
-        stepper.run(&mut state, (at_end / h).round() as u64).unwrap();
+        stepper.run(&mut state, steps).unwrap();
         (position(&stepper, &state, body).dot(&axis) - expected).abs()
     });
     assert_second_order(off);

@@ -16,6 +16,7 @@ pub(crate) mod method;
 pub(crate) mod mistake;
 pub(crate) mod orbit;
 pub(crate) mod parameter;
+pub(crate) mod part;
 pub(crate) mod picture;
 pub(crate) mod placed;
 pub(crate) mod quantity;

@@ -4,8 +4,8 @@ use liestep::SO3;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::file::joint::{Coordinates, Joint};
+use crate::file::part::{Between, SystemBody};
 use crate::file::start::Start;
-use crate::file::system::{Between, SystemBody};
 
 /// The place of a body and its velocities in the axes of space.
 #[derive(Clone, Copy)]

@@ -4,7 +4,6 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use liestep::NonstandardInertia;
-use liestep::mechanics::Inertia;
 use liestep::recording;
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::Deserialize;
@@ -14,6 +13,7 @@ use crate::file::body::{Full, INERTIA, Kinetic, Moments, Nonstandard};
 use crate::file::column::{Column, Output};
 use crate::file::joint::{Joint, JointTable, Names};
 use crate::file::mistake::{Mistake, Wrong, advised, place_of};
+use crate::file::part::{Between, SystemBody};
 use crate::file::picture::PlanePicture;
 use crate::file::placed::place;
 use crate::file::quantity::{
@@ -63,25 +63,6 @@ pub(crate) struct SystemPlaces {
     pub(crate) joints: Vec<(usize, usize)>,
     pub(crate) springs: Vec<(usize, usize)>,
     pub(crate) pace: (usize, usize),
-}
-
-#[derive(Clone)]
-pub(crate) struct SystemBody {
-    pub(crate) name: String,
-    pub(crate) m: f64,
-    pub(crate) J: Inertia,
-    /// A kinetic term of second order.
-    pub(crate) kinetic: Kinetic,
-    pub(crate) position: Vector3<f64>,
-    pub(crate) moving: Vector3<f64>,
-    pub(crate) start: Start,
-}
-
-/// A joint or a spring between two bodies, by their numbers; `None` is space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Between<T> {
-    pub(crate) bodies: [Option<usize>; 2],
-    pub(crate) of: T,
 }
 
 /// A spring between two points, from their centres of mass.

@@ -9,7 +9,8 @@ use nalgebra::{Vector3, Vector6};
 
 use crate::file::body::Kinetic;
 use crate::file::joint::{Joint, Kind};
-use crate::file::system::{Between, Spring, System, SystemBody};
+use crate::file::part::{Between, SystemBody};
+use crate::file::system::{Spring, System};
 use crate::run::nearest::Moving;
 
 /// A body with its weight. One of the three kinetic terms has the factor one, the others zero.

@@ -6,8 +6,9 @@ use liestep::mechanics::Inertia;
 use liestep::methods::{Constraint as _, Place};
 use nalgebra::{DMatrix, Dyn, Matrix3, Matrix3xX, SymmetricEigen, Vector3};
 
+use crate::file::part::Between;
 use crate::file::quantity::{round, short};
-use crate::file::system::{Between, Spring, System};
+use crate::file::system::{Spring, System};
 use crate::run::make::Stop;
 
 /// Least distance of a spring's ends, relative to its length at rest. Below it, rounding errors determine the

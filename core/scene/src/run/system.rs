@@ -8,9 +8,10 @@ use nalgebra::Vector3;
 
 use crate::file::body::Kinetic;
 use crate::file::mistake::Mistake;
+use crate::file::part::SystemBody;
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
-use crate::file::system::{System, SystemBody};
+use crate::file::system::System;
 use crate::run::make::{Course, Listeners, Note, Run, Stop, fast_turn, make, told};
 
 /// The quantity that violates a constraint, for messages.

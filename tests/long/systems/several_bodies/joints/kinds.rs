@@ -9,7 +9,7 @@ use liestep::mechanics::SceneVisitor;
 use liestep::methods::{Constraint, Joint, Multibody, Place, Slope};
 use liestep::motion::Propagator as _;
 use liestep::{NonstandardInertia, SO3, SetupError, constraint};
-use nalgebra::{Matrix3, SVector, Vector3, Vector6};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 
 use super::super::apart;
 use super::{Body, Components, EPSILON, Free, Joined, assert_no_work, falling, jointed, place, rod, six, watched};
@@ -202,11 +202,24 @@ fn a_sleeve_on_a_rail() {
 }
 
 /// Checks that gaps and slopes agree up to rounding.
-fn are_alike<A: Constraint<K>, B: Constraint<K>, const K: usize>(a: &A, b: &B, [above, below]: &[Place; 2]) {
-    let gaps = [a.gap(above, below), b.gap(above, below)];
+///
+/// The second may have room for more functions than the first; the others are zero.
+fn are_alike<A: Constraint<K>, B: Constraint<M>, const K: usize, const M: usize>(
+    a: &A,
+    b: &B,
+    [above, below]: &[Place; 2],
+) {
+    let padded = |row: usize, column: usize, entry: &dyn Fn(usize, usize) -> f64| {
+        if row < K { entry(row, column) } else { 0.0 }
+    };
+    let gap = a.gap(above, below);
+    let gaps = [SVector::<f64, M>::from_fn(|row, _| padded(row, 0, &|row, _| gap[row])), b.gap(above, below)];
     assert!((gaps[0] - gaps[1]).amax() < 8.0 * EPSILON * (1.0 + gaps[0].amax()), "{a:?}: {gaps:?}");
     for (a, b) in a.slope(above, below).iter().zip(&b.slope(above, below)) {
-        let off = (a.turn - b.turn).amax().max((a.shift - b.shift).amax());
+        let wide = |of: &SMatrix<f64, K, 3>| {
+            SMatrix::<f64, M, 3>::from_fn(|row, column| padded(row, column, &|row, column| of[(row, column)]))
+        };
+        let off = (wide(&a.turn) - b.turn).amax().max((wide(&a.shift) - b.shift).amax());
         assert!(off < 8.0 * EPSILON * (1.0 + a.turn.amax() + a.shift.amax()), "{a:?} {b:?}");
     }
 }

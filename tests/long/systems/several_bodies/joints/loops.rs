@@ -290,8 +290,8 @@ fn two_loops() {
     let bodies = falling([1.0, 1.3, 0.8, 0.6].map(rod), 9.81, Vector3::z());
     let (places, corner) = row([0.9, 0.1, -0.7]);
     // The fourth body is at right angles to the garland, from a point of the middle body that isn't its centre.
-    let knot = ball(Vector3::new(0.1, 0.0, 0.05), LEFT);
-    let start = super::place(&places[1]).of(&knot.above);
+    let at = Vector3::new(0.1, 0.0, 0.05);
+    let (knot, start) = (ball(at, LEFT), super::place(&places[1]).of(&at));
     let fourth = SO3::exp(Vector3::z() * 1.1);
     let along = fourth.as_matrix() * Vector3::x();
     let [first, second, third] = chained();
