@@ -4,8 +4,6 @@ use core::fmt::Debug;
 
 use nalgebra::{RealField, SMatrix};
 
-use crate::numbers::{Real, real};
-
 /// The declaration of a matrix group: the basis `E_k` of its Lie algebra, and the relation its elements satisfy.
 ///
 /// `N` is the size of the matrices and `D` the dimension of the group. Implement it for an empty marker type; the group
@@ -105,11 +103,6 @@ pub const fn matrix<const N: usize>(entries: &[(usize, usize, f64)]) -> [[f64; N
 /// The inverse `A⁻¹`, or infinities.
 pub(crate) fn inverse<T: RealField + Copy, const N: usize>(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     matrix.try_inverse().unwrap_or_else(|| SMatrix::repeat(T::one() / T::zero()))
-}
-
-/// The matrix `A` with entries of the scalar type.
-pub(crate) fn dynamic<T: Real, const N: usize>(matrix: &[[f64; N]; N]) -> SMatrix<T, N, N> {
-    SMatrix::from_fn(|row, column| real(matrix[row][column]))
 }
 
 /// Square of the rounding in products of written-out generators.
@@ -246,6 +239,20 @@ pub(crate) const fn products_vanish<const N: usize, const D: usize>(basis: &[[[f
         place += 1;
     }
     true
+}
+
+/// The number of rows down to the last in which a generator has an entry; the rows below are those of the identity in all
+/// elements of the group.
+pub(crate) const fn changed_rows<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> usize {
+    let (mut rows, mut place) = (0, 0);
+    while place < D * N * N {
+        let row = place / N % N;
+        if row >= rows && basis[place / (N * N)][row][place % N] != 0.0 {
+            rows = row + 1;
+        }
+        place += 1;
+    }
+    rows
 }
 
 /// Whether the symmetrised products of any three generators lie in their span.

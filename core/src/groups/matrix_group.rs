@@ -8,9 +8,11 @@ use nalgebra::{RealField, SMatrix, SVector, Vector1};
 use thiserror::Error;
 
 use super::LieGroup;
+use super::affine::times;
 use super::generators::{
-    Generators, NonZero, dynamic, nonzero_entries, products_vanish, squared_lengths, structure_constants,
+    Generators, NonZero, changed_rows, nonzero_entries, products_vanish, squared_lengths, structure_constants,
 };
+use super::rigid;
 use crate::numbers::{Lanes, Real, real, reported};
 
 /// An element of the matrix group with the [`Generators`] `K`.
@@ -75,6 +77,10 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> MatrixGroup<K
     const SQUARED_LENGTHS: [f64; D] = squared_lengths(&K::GENERATORS);
     const ENTRIES: [NonZero<N>; D] = nonzero_entries(&K::GENERATORS);
     const STRUCTURE: [[[f64; D]; D]; D] = structure_constants(&K::GENERATORS);
+    /// The number of rows in which an element isn't the identity.
+    pub(super) const ROWS: usize = changed_rows(&K::GENERATORS);
+    /// The size of the rotations of a group of rigid motions.
+    pub(super) const ROTATIONS: Option<usize> = rigid::size_of(&K::GENERATORS);
     /// Whether elements are multiplied by adding their differences from `I`.
     const IS_ADDED: bool = products_vanish(&K::GENERATORS);
 
@@ -99,6 +105,23 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> MatrixGroup<K
             let entries = entries.as_flattened().iter().take(*count);
             entries.fold(T::zero(), |sum, &(i, j, entry)| sum + matrix[(i, j)] * real(entry))
         })
+    }
+
+    /// The matrix with the columns `(A E_j B)^∨`; `A` and `B` have the last rows of the identity.
+    #[hot]
+    pub(super) fn conjugated(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, N>) -> SMatrix<T, D, D> {
+        if let Some(size) = const { Self::ROTATIONS } {
+            return rigid::conjugated(size, a, b);
+        }
+        let mut columns = SMatrix::<T, D, D>::zeros();
+        for j in 0..D {
+            let mut moved = SMatrix::<T, N, N>::zeros();
+            for &(row, column, entry) in entries(&Self::ENTRIES[j]) {
+                moved.column_mut(column).axpy(real(entry), &a.column(row), T::one());
+            }
+            columns.set_column(j, &Self::vee(&(moved * b)));
+        }
+        columns
     }
 
     /// The covector as a matrix, `Σ μ_k E_k / tr(E_kᵀ E_k)`.
@@ -126,6 +149,12 @@ pub(crate) fn lane_by_lane<T: Real, V: Lanes, const N: usize>(
 #[inline]
 fn nonzero<const N: usize>(matrix: &[[f64; N]; N]) -> impl Iterator<Item = (usize, usize, f64)> {
     (0..N * N).map(|place| (place / N, place % N, matrix[place / N][place % N])).filter(|entry| entry.2 != 0.0)
+}
+
+/// The nonzero entries of a generator.
+#[hot]
+fn entries<const N: usize>((entries, count): &NonZero<N>) -> &[(usize, usize, f64)] {
+    &entries.as_flattened()[..*count]
 }
 
 #[hot]
@@ -214,14 +243,14 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         if const { Self::IS_ADDED } {
             return -increment;
         }
-        -(Self::inverse_of(&(increment + SMatrix::identity())) * increment)
+        -times(&Self::inverse_of(&(increment + SMatrix::identity())), increment, Self::ROWS)
     }
 
     fn change(&self, increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         if const { Self::IS_ADDED } {
             return *increment;
         }
-        self.0 * increment
+        times(&self.0, increment, Self::ROWS)
     }
 
     /// The components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`, with `F⁻¹ = I + E`, `E = −F⁻¹D`.
@@ -247,9 +276,4 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     fn defect(&self) -> T {
         self.relation() + self.0.sum() * T::zero()
     }
-}
-
-/// The generators as matrices of the scalar.
-pub(crate) fn basis<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(k: usize) -> SMatrix<T, N, N> {
-    dynamic(&K::GENERATORS[k])
 }

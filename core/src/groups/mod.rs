@@ -27,6 +27,7 @@
 //! the other. `[SO3; N]` is the product of `N` equal groups, for [systems](crate::mechanics::Placement) of many bodies.
 
 mod advected;
+mod affine;
 mod bodies;
 mod exponential;
 mod generators;
@@ -57,8 +58,8 @@ pub use generators::{Generators, matrix};
 pub(crate) use generators::{inverse, is_closed_under_cayley, products_vanish};
 pub use heisenberg::{Heisenberg, HeisenbergGenerators};
 pub use liestep_macros::matrix_group;
+pub(crate) use matrix_group::lane_by_lane;
 pub use matrix_group::{MatrixGroup, NotInGroup};
-pub(crate) use matrix_group::{basis, lane_by_lane};
 pub use product::Factor;
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub(crate) use rotation_functions::rotation_coefficients;

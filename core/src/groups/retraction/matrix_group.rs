@@ -3,9 +3,10 @@
 use nalgebra::{RealField, SMatrix, SVector, Vector1, one, zero};
 
 use super::{CayleyRetraction, ExponentialRetraction, Retraction};
+use crate::groups::affine::{inverse_by_elimination, inverse_of_four, inverse_of_three, times};
 use crate::groups::{
-    Generators, LieGroup as _, MatrixGroup, basis, exponential, inverse, is_closed_under_cayley, lane_by_lane,
-    logarithm, products_vanish,
+    Generators, LieGroup as _, MatrixGroup, exponential, inverse, is_closed_under_cayley, lane_by_lane, logarithm,
+    products_vanish, rigid,
 };
 use crate::numbers::{Coordinates as _, Mask, Real, real};
 
@@ -23,9 +24,17 @@ fn factors<T: Real, const N: usize>(hat: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>
     (SMatrix::identity() - half, SMatrix::identity() + half)
 }
 
-/// The inverse of a matrix, lane by lane, as pivots differ between lanes.
-fn inverse_of<T: Real, const N: usize>(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
-    lane_by_lane(matrix, inverse::<T::Element, N>)
+/// The inverse of `I + X` for an `X` of the algebra. A general one is computed lane by lane, as pivots differ between lanes.
+#[hot]
+fn inverse_of<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(
+    matrix: &SMatrix<T, N, N>,
+) -> SMatrix<T, N, N> {
+    match (const { MatrixGroup::<K, T, N, D>::ROWS }, N) {
+        (2, 3) => inverse_of_three(matrix),
+        (3, 4) => inverse_of_four(matrix),
+        (rows, 5..) if const { MatrixGroup::<K, T, N, D>::ROTATIONS.is_some() } => inverse_by_elimination(matrix, rows),
+        _ => lane_by_lane(matrix, inverse::<T::Element, N>),
+    }
 }
 
 /// The Cayley map compiles for groups that it doesn't leave; it is an error for others, like SL(3).
@@ -41,29 +50,36 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
         if const { products_vanish(&K::GENERATORS) } {
             return hat;
         }
-        inverse_of(&factors(&hat).0) * hat
+        let rows = MatrixGroup::<K, T, N, D>::ROWS;
+        times(&inverse_of::<K, T, N, D>(&factors(&hat).0), &hat, rows)
     }
 
     /// The coordinates `2 ((F + I)⁻¹ (F − I))^∨`.
     fn local_coordinates(element: &MatrixGroup<K, T, N, D>) -> Option<SVector<T, D>> {
         let sum = element.matrix() + SMatrix::identity();
-        let xi = MatrixGroup::<K, T, N, D>::vee(&(inverse_of(&sum) * element.increment())) * real::<T>(2.0);
+        let sum_inverse: SMatrix<T, N, N> = lane_by_lane(&sum, inverse::<T::Element, N>);
+        let xi = MatrixGroup::<K, T, N, D>::vee(&(sum_inverse * element.increment())) * real::<T>(2.0);
         xi.is_finite().then_some(xi)
     }
 
     /// The tangent with the columns `((I − ξ̂/2)⁻¹ E_j (I + ξ̂/2)⁻¹)^∨`.
+    #[hot]
     fn tangent(xi: &SVector<T, D>) -> SMatrix<T, D, D> {
         if const { products_vanish(&K::GENERATORS) } {
             return SMatrix::identity();
         }
         let (minus, plus) = factors(&MatrixGroup::<K, T, N, D>::hat(xi));
-        let (minus, plus) = (inverse_of(&minus), inverse_of(&plus));
-        let mut tangent = SMatrix::<T, D, D>::zeros();
-        for j in 0..D {
-            let moved = minus * basis::<K, T, N, D>(j) * plus;
-            tangent.set_column(j, &MatrixGroup::<K, T, N, D>::vee(&moved));
+        let (minus, plus) = (inverse_of::<K, T, N, D>(&minus), inverse_of::<K, T, N, D>(&plus));
+        MatrixGroup::<K, T, N, D>::conjugated(&minus, &plus)
+    }
+
+    #[hot]
+    fn in_coordinates(jacobian: &SMatrix<T, D, D>, half: &SVector<T, D>) -> SMatrix<T, D, D> {
+        let tangent = <Self as Retraction<MatrixGroup<K, T, N, D>>>::tangent_of_half(half);
+        if let Some(size) = const { MatrixGroup::<K, T, N, D>::ROTATIONS } {
+            return rigid::times_tangent::<T, N, D>(size, jacobian, &tangent);
         }
-        tangent
+        jacobian * tangent
     }
 
     /// The group's own criterion takes one lane at a time.
