@@ -9,17 +9,57 @@ use crate::numbers::elimination::adjugate_3;
 
 /// The product `A B` for a `B` whose rows from `rows` on are zero, and an `A` whose rows there are those of the identity.
 #[hot]
-pub(super) fn times<T: Real, const N: usize>(
+pub(super) fn times<T: Real, const N: usize, const M: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, M>,
+    rows: usize,
+) -> SMatrix<T, N, M> {
+    let mut product = SMatrix::zeros();
+    for i in 0..rows.min(N) {
+        for j in 0..M {
+            let mut sum = a[(i, 0)] * b[(0, j)];
+            for k in 1..rows.min(N) {
+                sum += a[(i, k)] * b[(k, j)];
+            }
+            product[(i, j)] = sum;
+        }
+    }
+    product
+}
+
+/// The first rows of the product `Aᵀ B` for an `A` whose rows from `rows` on are zero.
+#[hot]
+pub(super) fn transpose_times<T: Real, const N: usize, const M: usize>(
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, M>,
+    rows: usize,
+) -> SMatrix<T, N, M> {
+    let mut product = SMatrix::zeros();
+    for i in 0..rows {
+        for j in 0..M {
+            let mut sum = a[(0, i)] * b[(0, j)];
+            for k in 1..rows {
+                sum += a[(k, i)] * b[(k, j)];
+            }
+            product[(i, j)] = sum;
+        }
+    }
+    product
+}
+
+/// The first rows of the product `A Bᵀ` for a `B` whose rows from `rows` on are zero.
+#[hot]
+pub(super) fn times_transpose<T: Real, const N: usize>(
     a: &SMatrix<T, N, N>,
     b: &SMatrix<T, N, N>,
     rows: usize,
 ) -> SMatrix<T, N, N> {
     let mut product = SMatrix::zeros();
     for i in 0..rows {
-        for j in 0..N {
-            let mut sum = a[(i, 0)] * b[(0, j)];
-            for k in 1..rows {
-                sum += a[(i, k)] * b[(k, j)];
+        for j in 0..rows {
+            let mut sum = a[(i, 0)] * b[(j, 0)];
+            for k in 1..N {
+                sum += a[(i, k)] * b[(j, k)];
             }
             product[(i, j)] = sum;
         }

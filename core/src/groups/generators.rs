@@ -4,6 +4,8 @@ use core::fmt::Debug;
 
 use nalgebra::{RealField, SMatrix};
 
+use crate::numbers::{Real, real};
+
 /// The declaration of a matrix group: the basis `E_k` of its Lie algebra, and the relation its elements satisfy.
 ///
 /// `N` is the size of the matrices and `D` the dimension of the group. Implement it for an empty marker type; the group
@@ -103,6 +105,11 @@ pub const fn matrix<const N: usize>(entries: &[(usize, usize, f64)]) -> [[f64; N
 /// The inverse `A⁻¹`, or infinities.
 pub(crate) fn inverse<T: RealField + Copy, const N: usize>(matrix: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
     matrix.try_inverse().unwrap_or_else(|| SMatrix::repeat(T::one() / T::zero()))
+}
+
+/// The matrix `A` with entries of the scalar type.
+pub(crate) fn dynamic<T: Real, const N: usize>(matrix: &[[f64; N]; N]) -> SMatrix<T, N, N> {
+    SMatrix::from_fn(|row, column| real(matrix[row][column]))
 }
 
 /// Square of the rounding in products of written-out generators.

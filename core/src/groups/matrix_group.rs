@@ -8,9 +8,9 @@ use nalgebra::{RealField, SMatrix, SVector, Vector1};
 use thiserror::Error;
 
 use super::LieGroup;
-use super::affine::times;
+use super::affine::{times, times_transpose, transpose_times};
 use super::generators::{
-    Generators, NonZero, changed_rows, nonzero_entries, products_vanish, squared_lengths, structure_constants,
+    Generators, NonZero, changed_rows, dynamic, nonzero_entries, products_vanish, squared_lengths, structure_constants,
 };
 use super::rigid;
 use crate::numbers::{Lanes, Real, real, reported};
@@ -77,8 +77,6 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> MatrixGroup<K
     const SQUARED_LENGTHS: [f64; D] = squared_lengths(&K::GENERATORS);
     const ENTRIES: [NonZero<N>; D] = nonzero_entries(&K::GENERATORS);
     const STRUCTURE: [[[f64; D]; D]; D] = structure_constants(&K::GENERATORS);
-    /// The number of rows in which an element isn't the identity.
-    pub(super) const ROWS: usize = changed_rows(&K::GENERATORS);
     /// The size of the rotations of a group of rigid motions.
     pub(super) const ROTATIONS: Option<usize> = rigid::size_of(&K::GENERATORS);
     /// Whether elements are multiplied by adding their differences from `I`.
@@ -105,23 +103,6 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> MatrixGroup<K
             let entries = entries.as_flattened().iter().take(*count);
             entries.fold(T::zero(), |sum, &(i, j, entry)| sum + matrix[(i, j)] * real(entry))
         })
-    }
-
-    /// The matrix with the columns `(A E_j B)^∨`; `A` and `B` have the last rows of the identity.
-    #[hot]
-    pub(super) fn conjugated(a: &SMatrix<T, N, N>, b: &SMatrix<T, N, N>) -> SMatrix<T, D, D> {
-        if let Some(size) = const { Self::ROTATIONS } {
-            return rigid::conjugated(size, a, b);
-        }
-        let mut columns = SMatrix::<T, D, D>::zeros();
-        for j in 0..D {
-            let mut moved = SMatrix::<T, N, N>::zeros();
-            for &(row, column, entry) in entries(&Self::ENTRIES[j]) {
-                moved.column_mut(column).axpy(real(entry), &a.column(row), T::one());
-            }
-            columns.set_column(j, &Self::vee(&(moved * b)));
-        }
-        columns
     }
 
     /// The covector as a matrix, `Σ μ_k E_k / tr(E_kᵀ E_k)`.
@@ -151,12 +132,6 @@ fn nonzero<const N: usize>(matrix: &[[f64; N]; N]) -> impl Iterator<Item = (usiz
     (0..N * N).map(|place| (place / N, place % N, matrix[place / N][place % N])).filter(|entry| entry.2 != 0.0)
 }
 
-/// The nonzero entries of a generator.
-#[hot]
-fn entries<const N: usize>((entries, count): &NonZero<N>) -> &[(usize, usize, f64)] {
-    &entries.as_flattened()[..*count]
-}
-
 #[hot]
 impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for MatrixGroup<K, T, N, D> {
     type Scalar = T;
@@ -164,6 +139,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     type Matrix = SMatrix<T, N, N>;
 
     const DIMENSION: usize = D;
+    const ROWS: usize = changed_rows(&K::GENERATORS);
     const COORDINATES: &'static [&'static str] = K::COORDINATES;
 
     fn identity() -> Self {
@@ -260,8 +236,8 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         }
         let inverse_increment = Self::inverse_increment(increment);
         let covector = Self::dual_hat(momentum);
-        let moved = increment.transpose() * covector;
-        Self::pairings(&(moved + (covector + moved) * inverse_increment.transpose()))
+        let moved = transpose_times(increment, &covector, Self::ROWS);
+        Self::pairings(&(moved + times_transpose(&(covector + moved), &inverse_increment, Self::ROWS)))
     }
 
     /// The components whose generators are skew.
@@ -276,4 +252,9 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     fn defect(&self) -> T {
         self.relation() + self.0.sum() * T::zero()
     }
+}
+
+/// The generators as matrices of the scalar.
+pub(crate) fn basis<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(k: usize) -> SMatrix<T, N, N> {
+    dynamic(&K::GENERATORS[k])
 }

@@ -58,8 +58,8 @@ pub use generators::{Generators, matrix};
 pub(crate) use generators::{inverse, is_closed_under_cayley, products_vanish};
 pub use heisenberg::{Heisenberg, HeisenbergGenerators};
 pub use liestep_macros::matrix_group;
-pub(crate) use matrix_group::lane_by_lane;
 pub use matrix_group::{MatrixGroup, NotInGroup};
+pub(crate) use matrix_group::{basis, lane_by_lane};
 pub use product::Factor;
 pub use retraction::{CayleyRetraction, ExponentialRetraction, Retraction};
 pub(crate) use rotation_functions::rotation_coefficients;
@@ -110,6 +110,10 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
 
     /// Number of equal bodies in an array; otherwise one.
     const BODIES: usize = 1;
+
+    /// The number of rows of a matrix below which all elements are the identity; by default all may differ from it.
+    #[doc(hidden)]
+    const ROWS: usize = usize::MAX;
 
     /// Number of rotations of bodies in an element.
     const ATTITUDES: usize = 0;

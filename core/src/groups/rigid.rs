@@ -1,8 +1,8 @@
 //! Rotations with columns beside them, `[R, X; 0, I]`: the common parts of SE(2), SE(3) and SE₂(3).
 
-use nalgebra::{RealField, SMatrix};
+use nalgebra::{RealField, SMatrix, SVector};
 
-use crate::numbers::{Real, real};
+use crate::numbers::Real;
 
 /// The place `(row, column)` of the entry 1 of a rotation's generator, whose other entry is −1 at `(column, row)`: of the one
 /// rotation of the plane, or of the `ê_k` of SO(3).
@@ -57,24 +57,45 @@ pub(super) const fn size_of<const N: usize, const D: usize>(basis: &[[[f64; N]; 
     None
 }
 
-/// The matrix with the columns `(A E_j B)^∨`; the rows of `A` and `B` below the rotation are zero beside the diagonal.
+/// `I + ŷ` for half the coordinates `y` of an increment, or `I − ŷ` for those of its inverse.
 #[hot]
-pub(super) fn conjugated<T: Real, const N: usize, const D: usize>(
+pub(super) fn factor<T: Real, const N: usize, const D: usize>(size: usize, half: &SVector<T, D>) -> SMatrix<T, N, N> {
+    let mut matrix = SMatrix::identity();
+    for k in 0..turns(size) {
+        let (row, column) = turned(size, k);
+        matrix[(row, column)] = half[k];
+        matrix[(column, row)] = -half[k];
+    }
+    for column in 0..N - size {
+        for row in 0..size {
+            matrix[(row, size + column)] = half[turns(size) + column * size + row];
+        }
+    }
+    matrix
+}
+
+/// The tangent of the Cayley map by half the coordinates, with the columns `2 (A E_j B)^∨` for `A = (I − ŷ)⁻¹` and
+/// `B = (I + ŷ)⁻¹`.
+#[hot]
+pub(super) fn tangent_of_half<T: Real, const N: usize, const D: usize>(
     size: usize,
     a: &SMatrix<T, N, N>,
     b: &SMatrix<T, N, N>,
 ) -> SMatrix<T, D, D> {
     let (turns, mut columns) = (turns(size), SMatrix::zeros());
+    let twice = *a + *a;
     for j in 0..turns {
         let (row, column) = turned(size, j);
-        let moved = |p: usize, q: usize| a[(p, row)] * b[(column, q)] - a[(p, column)] * b[(row, q)];
+        let moved =
+            |a: &SMatrix<T, N, N>, p: usize, q: usize| a[(p, row)] * b[(column, q)] - a[(p, column)] * b[(row, q)];
         for k in 0..turns {
+            // A rotation's generator has the squared length 2.
             let (p, q) = turned(size, k);
-            columns[(k, j)] = (moved(p, q) - moved(q, p)) * real(0.5);
+            columns[(k, j)] = moved(a, p, q) - moved(a, q, p);
         }
         for beside in 0..N - size {
             for p in 0..size {
-                columns[(turns + beside * size + p, j)] = moved(p, size + beside);
+                columns[(turns + beside * size + p, j)] = moved(&twice, p, size + beside);
             }
         }
     }
@@ -82,14 +103,14 @@ pub(super) fn conjugated<T: Real, const N: usize, const D: usize>(
         for j in 0..size {
             for p in 0..size {
                 let first = turns + beside * size;
-                columns[(first + p, first + j)] = a[(p, j)] * b[(size + beside, size + beside)];
+                columns[(first + p, first + j)] = twice[(p, j)] * b[(size + beside, size + beside)];
             }
         }
     }
     columns
 }
 
-/// The product `A T` for a [tangent](conjugated) `T`: a translation changes nothing but itself.
+/// The product `A T` for a [tangent](tangent_of_half) `T`: a translation changes nothing but itself.
 #[hot]
 pub(super) fn times_tangent<T: Real, const N: usize, const D: usize>(
     size: usize,

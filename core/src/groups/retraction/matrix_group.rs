@@ -5,7 +5,7 @@ use nalgebra::{RealField, SMatrix, SVector, Vector1, one, zero};
 use super::{CayleyRetraction, ExponentialRetraction, Retraction};
 use crate::groups::affine::{inverse_by_elimination, inverse_of_four, inverse_of_three, times};
 use crate::groups::{
-    Generators, LieGroup as _, MatrixGroup, exponential, inverse, is_closed_under_cayley, lane_by_lane, logarithm,
+    Generators, LieGroup, MatrixGroup, basis, exponential, inverse, is_closed_under_cayley, lane_by_lane, logarithm,
     products_vanish, rigid,
 };
 use crate::numbers::{Coordinates as _, Mask, Real, real};
@@ -18,22 +18,21 @@ impl<K: Generators<N, D>, const N: usize, const D: usize> Closure<K, N, D> {
         assert!(is_closed_under_cayley(&K::GENERATORS), "the Cayley map leaves this group; use ExponentialRetraction");
 }
 
-/// The two factors `I − ξ̂/2` and `I + ξ̂/2`.
-fn factors<T: Real, const N: usize>(hat: &SMatrix<T, N, N>) -> (SMatrix<T, N, N>, SMatrix<T, N, N>) {
-    let half = hat * real::<T>(0.5);
-    (SMatrix::identity() - half, SMatrix::identity() + half)
-}
-
-/// The inverse of `I + X` for an `X` of the algebra. A general one is computed lane by lane, as pivots differ between lanes.
+/// The inverse of `I + ŷ`. A general one is computed lane by lane, as pivots differ between lanes.
 #[hot]
-fn inverse_of<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(
-    matrix: &SMatrix<T, N, N>,
+fn inverse_of_factor<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(
+    half: &SVector<T, D>,
 ) -> SMatrix<T, N, N> {
-    match (const { MatrixGroup::<K, T, N, D>::ROWS }, N) {
-        (2, 3) => inverse_of_three(matrix),
-        (3, 4) => inverse_of_four(matrix),
-        (rows, 5..) if const { MatrixGroup::<K, T, N, D>::ROTATIONS.is_some() } => inverse_by_elimination(matrix, rows),
-        _ => lane_by_lane(matrix, inverse::<T::Element, N>),
+    let rows = const { MatrixGroup::<K, T, N, D>::ROWS };
+    let matrix = match const { MatrixGroup::<K, T, N, D>::ROTATIONS } {
+        Some(size) => rigid::factor(size, half),
+        None => SMatrix::identity() + MatrixGroup::<K, T, N, D>::hat(half),
+    };
+    match (rows, N) {
+        (2, 3) => inverse_of_three(&matrix),
+        (3, 4) => inverse_of_four(&matrix),
+        (_, 5..) if const { MatrixGroup::<K, T, N, D>::ROTATIONS.is_some() } => inverse_by_elimination(&matrix, rows),
+        _ => lane_by_lane(&matrix, inverse::<T::Element, N>),
     }
 }
 
@@ -44,14 +43,19 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
     /// The increment `D = (I − ξ̂/2)⁻¹ ξ̂`.
     #[hot]
     fn increment(xi: &SVector<T, D>) -> SMatrix<T, N, N> {
+        <Self as Retraction<MatrixGroup<K, T, N, D>>>::increment_of_half(&(xi * real::<T>(0.5)))
+    }
+
+    /// The increment `D = (I − ŷ)⁻¹ 2ŷ`.
+    #[hot]
+    fn increment_of_half(half: &SVector<T, D>) -> SMatrix<T, N, N> {
         let () = Closure::<K, N, D>::CHECKED;
-        let hat = MatrixGroup::<K, T, N, D>::hat(xi);
-        // If products vanish, `(I − ξ̂/2)⁻¹` acts on ξ̂ as the identity.
+        let hat = MatrixGroup::<K, T, N, D>::hat(&(half + half));
+        // If products vanish, `(I − ŷ)⁻¹` acts on ŷ as the identity.
         if const { products_vanish(&K::GENERATORS) } {
             return hat;
         }
-        let rows = MatrixGroup::<K, T, N, D>::ROWS;
-        times(&inverse_of::<K, T, N, D>(&factors(&hat).0), &hat, rows)
+        times(&inverse_of_factor::<K, T, N, D>(&-half), &hat, MatrixGroup::<K, T, N, D>::ROWS)
     }
 
     /// The coordinates `2 ((F + I)⁻¹ (F − I))^∨`.
@@ -62,15 +66,26 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
         xi.is_finite().then_some(xi)
     }
 
-    /// The tangent with the columns `((I − ξ̂/2)⁻¹ E_j (I + ξ̂/2)⁻¹)^∨`.
-    #[hot]
     fn tangent(xi: &SVector<T, D>) -> SMatrix<T, D, D> {
+        <Self as Retraction<MatrixGroup<K, T, N, D>>>::tangent_of_half(&(xi * real::<T>(0.5))) * real::<T>(0.5)
+    }
+
+    /// The tangent with the columns `2 ((I − ŷ)⁻¹ E_j (I + ŷ)⁻¹)^∨`.
+    #[hot]
+    fn tangent_of_half(half: &SVector<T, D>) -> SMatrix<T, D, D> {
         if const { products_vanish(&K::GENERATORS) } {
-            return SMatrix::identity();
+            return SMatrix::from_diagonal_element(real(2.0));
         }
-        let (minus, plus) = factors(&MatrixGroup::<K, T, N, D>::hat(xi));
-        let (minus, plus) = (inverse_of::<K, T, N, D>(&minus), inverse_of::<K, T, N, D>(&plus));
-        MatrixGroup::<K, T, N, D>::conjugated(&minus, &plus)
+        let [minus, plus] = [-half, *half].map(|y| inverse_of_factor::<K, T, N, D>(&y));
+        if let Some(size) = const { MatrixGroup::<K, T, N, D>::ROTATIONS } {
+            return rigid::tangent_of_half(size, &minus, &plus);
+        }
+        let mut tangent = SMatrix::<T, D, D>::zeros();
+        for j in 0..D {
+            let moved = minus * basis::<K, T, N, D>(j) * plus;
+            tangent.set_column(j, &(MatrixGroup::<K, T, N, D>::vee(&moved) * real::<T>(2.0)));
+        }
+        tangent
     }
 
     #[hot]
