@@ -55,7 +55,7 @@ pub(crate) use advected::{homogeneous, seen_of_unit};
 pub use bodies::Pair;
 pub(crate) use exponential::{exponential, logarithm};
 pub use generators::{Generators, matrix};
-pub(crate) use generators::{inverse, is_closed_under_cayley, products_vanish};
+pub(crate) use generators::{cubes, dynamic, inverse, is_closed_under_cayley, products_vanish, squares};
 pub use heisenberg::{Heisenberg, HeisenbergGenerators};
 pub use liestep_macros::matrix_group;
 pub use matrix_group::{MatrixGroup, NotInGroup};

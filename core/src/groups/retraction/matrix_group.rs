@@ -1,21 +1,55 @@
 //! The two retractions of a group with generators.
 
-use nalgebra::{RealField, SMatrix, SVector, Vector1, one, zero};
+use nalgebra::{RealField, SMatrix, SVector, SimdBool as _, Vector1, one, zero};
 
 use super::{CayleyRetraction, ExponentialRetraction, Retraction};
 use crate::groups::affine::{inverse_by_elimination, inverse_of_four, inverse_of_three, times};
 use crate::groups::{
-    Generators, LieGroup, MatrixGroup, basis, exponential, inverse, is_closed_under_cayley, lane_by_lane, logarithm,
-    products_vanish, rigid,
+    Generators, LieGroup, MatrixGroup, basis, cubes, dynamic, exponential, inverse, is_closed_under_cayley,
+    lane_by_lane, logarithm, products_vanish, rigid, squares,
 };
 use crate::numbers::{Coordinates as _, Mask, Real, real};
 
-/// A check that fails to compile for a group that the Cayley map leaves.
-struct Closure<K, const N: usize, const D: usize>(K);
+/// The coordinates of a group: none for the Cayley map, or for a group that it leaves the numbers `c_k` with `E_k³ = c_k E_k`,
+/// by which the product of the Cayley maps of all generators stays in it. A basis without them fails to compile.
+struct Coordinates<K, const N: usize, const D: usize>(K);
 
-impl<K: Generators<N, D>, const N: usize, const D: usize> Closure<K, N, D> {
-    const CHECKED: () =
-        assert!(is_closed_under_cayley(&K::GENERATORS), "the Cayley map leaves this group; use ExponentialRetraction");
+impl<K: Generators<N, D>, const N: usize, const D: usize> Coordinates<K, N, D> {
+    const CUBES: Option<[f64; D]> = if is_closed_under_cayley(&K::GENERATORS) {
+        None
+    } else {
+        let cubes = cubes(&K::GENERATORS);
+        assert!(
+            cubes.is_some(),
+            "the Cayley map leaves this group, and the cube of a generator isn't a multiple of it: choose generators with E³ = c E"
+        );
+        cubes
+    };
+    const SQUARES: [[[f64; N]; N]; D] = squares(&K::GENERATORS);
+}
+
+/// The increment `Π cay(2 y_k E_k) − I` for half the coordinates `y`; `tangent` gets each column `2(A E_k A⁻¹)/(1 − c y_k²)` of
+/// the tangent, with the product `A` before its factor.
+///
+/// By `E³ = c E` a factor is `I + (2y E + 2y² E²)/(1 − c y²)`.
+#[hot]
+fn product<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(
+    cubes: &[f64; D],
+    half: &SVector<T, D>,
+    mut tangent: impl FnMut(usize, SVector<T, D>),
+) -> SMatrix<T, N, N> {
+    let one = SMatrix::<T, N, N>::identity();
+    let (mut increment, mut inverse) = (SMatrix::<T, N, N>::zeros(), one);
+    for k in 0..D {
+        let (e, y, before) = (basis::<K, T, N, D>(k), half[k], increment + one);
+        let squared = y * y;
+        let two = real::<T>(2.0) / (T::one() - squared * real(cubes[k]));
+        tangent(k, MatrixGroup::<K, T, N, D>::vee(&(before * e * inverse * two)));
+        let (linear, square) = (e * (two * y), dynamic(&Coordinates::<K, N, D>::SQUARES[k]) * (two * squared));
+        increment += before * (square + linear);
+        inverse = (one + (square - linear)) * inverse;
+    }
+    increment
 }
 
 /// The inverse of `I + ŷ`. A general one is computed lane by lane, as pivots differ between lanes.
@@ -36,7 +70,8 @@ fn inverse_of_factor<K: Generators<N, D>, T: Real, const N: usize, const D: usiz
     }
 }
 
-/// The Cayley map compiles for groups that it doesn't leave; it is an error for others, like SL(3).
+/// For groups that the Cayley map leaves, like SL(3), the coordinates are those of the product of the Cayley maps of all
+/// generators.
 impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<MatrixGroup<K, T, N, D>>
     for CayleyRetraction
 {
@@ -49,7 +84,9 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
     /// The increment `D = (I − ŷ)⁻¹ 2ŷ`.
     #[hot]
     fn increment_of_half(half: &SVector<T, D>) -> SMatrix<T, N, N> {
-        let () = Closure::<K, N, D>::CHECKED;
+        if let Some(cubes) = const { &Coordinates::<K, N, D>::CUBES } {
+            return product::<K, T, N, D>(cubes, half, |_, _| {});
+        }
         let hat = MatrixGroup::<K, T, N, D>::hat(&(half + half));
         // If products vanish, `(I − ŷ)⁻¹` acts on ŷ as the identity.
         if const { products_vanish(&K::GENERATORS) } {
@@ -58,8 +95,11 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
         times(&inverse_of_factor::<K, T, N, D>(&-half), &hat, MatrixGroup::<K, T, N, D>::ROWS)
     }
 
-    /// The coordinates `2 ((F + I)⁻¹ (F − I))^∨`.
+    /// The coordinates `2 ((F + I)⁻¹ (F − I))^∨`, or those of a product by Newton's iteration.
     fn local_coordinates(element: &MatrixGroup<K, T, N, D>) -> Option<SVector<T, D>> {
+        if const { Coordinates::<K, N, D>::CUBES.is_some() } {
+            return solved(element);
+        }
         let sum = element.matrix() + SMatrix::identity();
         let sum_inverse: SMatrix<T, N, N> = lane_by_lane(&sum, inverse::<T::Element, N>);
         let xi = MatrixGroup::<K, T, N, D>::vee(&(sum_inverse * element.increment())) * real::<T>(2.0);
@@ -75,6 +115,11 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
     fn tangent_of_half(half: &SVector<T, D>) -> SMatrix<T, D, D> {
         if const { products_vanish(&K::GENERATORS) } {
             return SMatrix::from_diagonal_element(real(2.0));
+        }
+        if let Some(cubes) = const { &Coordinates::<K, N, D>::CUBES } {
+            let mut tangent = SMatrix::<T, D, D>::zeros();
+            product::<K, T, N, D>(cubes, half, |k, column| tangent.set_column(k, &column));
+            return tangent;
         }
         let [minus, plus] = [-half, *half].map(|y| inverse_of_factor::<K, T, N, D>(&y));
         if let Some(size) = const { MatrixGroup::<K, T, N, D>::ROTATIONS } {
@@ -105,6 +150,34 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
         });
         far.x.simd_eq(T::zero())
     }
+}
+
+/// Limit of the iterations for coordinates; quadratic convergence takes fewer wherever it comes about.
+const MOST_ITERATIONS: u32 = 50;
+
+/// The coordinates of an element by Newton's iteration from zero, `T δy = ((F τ⁻¹ − I))^∨`; none if it doesn't converge.
+fn solved<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(
+    element: &MatrixGroup<K, T, N, D>,
+) -> Option<SVector<T, D>> {
+    type Own = CayleyRetraction;
+    let mut half = SVector::<T, D>::zeros();
+    for _ in 0..MOST_ITERATIONS {
+        let now = MatrixGroup::<K, T, N, D>::from_increment(
+            &<Own as Retraction<MatrixGroup<K, T, N, D>>>::increment_of_half(&half),
+        );
+        let missed = (element.increment() - now.increment()) * now.inverse().matrix();
+        let residual = MatrixGroup::<K, T, N, D>::vee(&missed);
+        let tangent = <Own as Retraction<MatrixGroup<K, T, N, D>>>::tangent_of_half(&half);
+        let update = SVector::<T, D>::solve(&tangent, &residual).0;
+        half += update;
+        // The next update would be below rounding.
+        if crate::numbers::Coordinates::dot(&update, &update).simd_le(half.dot(&half) * T::simd_default_epsilon()).all()
+        {
+            let xi = half + half;
+            return xi.is_finite().then_some(xi);
+        }
+    }
+    None
 }
 
 impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> Retraction<MatrixGroup<K, T, N, D>>

@@ -82,7 +82,10 @@ pub trait Retraction<G: LieGroup> {
 ///
 /// No transcendental function is evaluated, so a step in these coordinates gives the same bits on every IEEE machine.
 /// On SO(3) `ξ = 2 tan(θ/2) n` for the rotation by `θ` about `n`, and only half turns are out of reach; on other groups
-/// the elements with the eigenvalue −1 are. A group that the map leaves, like SL(3), doesn't compile.
+/// the elements with the eigenvalue −1 are.
+///
+/// A group by [`Generators`](crate::groups::Generators) that the map leaves, like SL(3), has coordinates of the second kind
+/// instead: the product `Π cay(ξ_k E_k)` over its generators, which stays in it if each `E_k³` is a multiple of `E_k`.
 #[derive(Clone, Copy, Debug)]
 pub struct CayleyRetraction;
 
