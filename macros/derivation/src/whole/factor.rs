@@ -3,10 +3,11 @@
 //! The order of operations is that of the library's groups.
 
 use super::StepRefusal;
-use super::basis::{Basis, Chart, Form};
+use super::basis::{Basis, Form};
 use super::matrix::Matrix;
 use super::relations::{Relations, restored};
 use super::values::{Value, Words};
+use crate::mathematics::chart::{Chart, cube, times};
 use crate::staged::{Array, Source};
 
 /// A factor of the group, and its place among all.
@@ -160,7 +161,7 @@ impl MatrixFactor {
         let mut columns = Vec::new();
         for (e, &y) in self.basis.generators.iter().zip(half) {
             let before = increment.plus(words, &one);
-            let c = self.basis.cube(e).unwrap_or(0.0);
+            let c = cube(e).unwrap_or(0.0);
             let squared = words.multiply(y, y);
             let fraction = words.multiply(Value::of(c), squared);
             let below = words.subtract(Value::ONE, fraction);
@@ -169,7 +170,7 @@ impl MatrixFactor {
             columns.push(self.vee(words, &moved));
             let (first, second) = (words.multiply(two, y), words.multiply(two, squared));
             let linear = Matrix::known(n, e).scaled(words, first);
-            let square = Matrix::known(n, &self.basis.times(e, e)).scaled(words, second);
+            let square = Matrix::known(n, &times(e, e)).scaled(words, second);
             let [plus, minus] = [square.plus(words, &linear), square.minus(words, &linear)];
             let change = before.times(words, &plus);
             increment = increment.plus(words, &change);
