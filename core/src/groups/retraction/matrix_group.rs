@@ -8,13 +8,13 @@ use crate::groups::{
     Generators, LieGroup, MatrixGroup, basis, cubes, dynamic, exponential, inverse, is_closed_under_cayley,
     lane_by_lane, logarithm, products_vanish, rigid, squares,
 };
-use crate::numbers::{Coordinates as _, Mask, Real, real};
+use crate::numbers::{Coordinates, Mask, Real, nowhere, real};
 
 /// The coordinates of a group: none for the Cayley map, or for a group that it leaves the numbers `c_k` with `E_k³ = c_k E_k`,
 /// by which the product of the Cayley maps of all generators stays in it. A basis without them fails to compile.
-struct Coordinates<K, const N: usize, const D: usize>(K);
+struct Chart<K, const N: usize, const D: usize>(K);
 
-impl<K: Generators<N, D>, const N: usize, const D: usize> Coordinates<K, N, D> {
+impl<K: Generators<N, D>, const N: usize, const D: usize> Chart<K, N, D> {
     const CUBES: Option<[f64; D]> = if is_closed_under_cayley(&K::GENERATORS) {
         None
     } else {
@@ -45,7 +45,7 @@ fn product<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(
         let squared = y * y;
         let two = real::<T>(2.0) / (T::one() - squared * real(cubes[k]));
         tangent(k, MatrixGroup::<K, T, N, D>::vee(&(before * e * inverse * two)));
-        let (linear, square) = (e * (two * y), dynamic(&Coordinates::<K, N, D>::SQUARES[k]) * (two * squared));
+        let (linear, square) = (e * (two * y), dynamic(&Chart::<K, N, D>::SQUARES[k]) * (two * squared));
         increment += before * (square + linear);
         inverse = (one + (square - linear)) * inverse;
     }
@@ -84,7 +84,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
     /// The increment `D = (I − ŷ)⁻¹ 2ŷ`.
     #[hot]
     fn increment_of_half(half: &SVector<T, D>) -> SMatrix<T, N, N> {
-        if let Some(cubes) = const { &Coordinates::<K, N, D>::CUBES } {
+        if let Some(cubes) = const { &Chart::<K, N, D>::CUBES } {
             return product::<K, T, N, D>(cubes, half, |_, _| {});
         }
         let hat = MatrixGroup::<K, T, N, D>::hat(&(half + half));
@@ -97,7 +97,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
 
     /// The coordinates `2 ((F + I)⁻¹ (F − I))^∨`, or those of a product by Newton's iteration.
     fn local_coordinates(element: &MatrixGroup<K, T, N, D>) -> Option<SVector<T, D>> {
-        if const { Coordinates::<K, N, D>::CUBES.is_some() } {
+        if const { Chart::<K, N, D>::CUBES.is_some() } {
             return solved(element);
         }
         let sum = element.matrix() + SMatrix::identity();
@@ -116,7 +116,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
         if const { products_vanish(&K::GENERATORS) } {
             return SMatrix::from_diagonal_element(real(2.0));
         }
-        if let Some(cubes) = const { &Coordinates::<K, N, D>::CUBES } {
+        if let Some(cubes) = const { &Chart::<K, N, D>::CUBES } {
             let mut tangent = SMatrix::<T, D, D>::zeros();
             product::<K, T, N, D>(cubes, half, |k, column| tangent.set_column(k, &column));
             return tangent;
@@ -154,30 +154,48 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
 
 /// Limit of the iterations for coordinates; quadratic convergence takes fewer wherever it comes about.
 const MOST_ITERATIONS: u32 = 50;
+/// Limit of the halvings of an update.
+const MOST_HALVINGS: u32 = 20;
 
-/// The coordinates of an element by Newton's iteration from zero, `T δy = ((F τ⁻¹ − I))^∨`; none if it doesn't converge.
+/// The coordinates of an element by Newton's iteration from zero, `T δy = (F τ⁻¹ − I)^∨`, with updates that are halved until
+/// the residual falls; none if it doesn't converge.
 fn solved<K: Generators<N, D>, T: Real, const N: usize, const D: usize>(
     element: &MatrixGroup<K, T, N, D>,
 ) -> Option<SVector<T, D>> {
-    type Own = CayleyRetraction;
-    let mut half = SVector::<T, D>::zeros();
+    let missed = |half: &SVector<T, D>| {
+        let now: MatrixGroup<K, T, N, D> = CayleyRetraction::retract(&(half + half));
+        (element.increment() - now.increment()) * now.inverse().matrix()
+    };
+    let size = |matrix: &SMatrix<T, N, N>| matrix.component_mul(matrix).sum();
+    let (mut half, mut rest) = (SVector::<T, D>::zeros(), missed(&SVector::zeros()));
     for _ in 0..MOST_ITERATIONS {
-        let now = MatrixGroup::<K, T, N, D>::from_increment(
-            &<Own as Retraction<MatrixGroup<K, T, N, D>>>::increment_of_half(&half),
-        );
-        let missed = (element.increment() - now.increment()) * now.inverse().matrix();
-        let residual = MatrixGroup::<K, T, N, D>::vee(&missed);
-        let tangent = <Own as Retraction<MatrixGroup<K, T, N, D>>>::tangent_of_half(&half);
-        let update = SVector::<T, D>::solve(&tangent, &residual).0;
-        half += update;
-        // The next update would be below rounding.
-        if crate::numbers::Coordinates::dot(&update, &update).simd_le(half.dot(&half) * T::simd_default_epsilon()).all()
+        let tangent = <CayleyRetraction as Retraction<MatrixGroup<K, T, N, D>>>::tangent_of_half(&half);
+        let mut update = SVector::<T, D>::solve(&tangent, &MatrixGroup::<K, T, N, D>::vee(&rest)).0;
+        let (mut next, mut helped) = (half, nowhere::<T>());
+        for _ in 0..MOST_HALVINGS {
+            let candidate = half + update;
+            let helps = size(&missed(&candidate)).simd_lt(size(&rest)) & !helped;
+            next = Coordinates::select(candidate, helps, next);
+            helped = helped | helps;
+            if helped.all() {
+                break;
+            }
+            update *= real::<T>(0.5);
+        }
+        let change = next - half;
+        (half, rest) = (next, missed(&next));
+        if change
+            .component_mul(&change)
+            .sum()
+            .simd_le(half.component_mul(&half).sum() * T::simd_default_epsilon())
+            .all()
         {
-            let xi = half + half;
-            return xi.is_finite().then_some(xi);
+            break;
         }
     }
-    None
+    // Half of the digits distinguish a solution from a residual that doesn't fall any more.
+    let is_solved = size(&rest).simd_le(T::simd_default_epsilon());
+    (is_solved.all() && Coordinates::is_finite(&half)).then(|| half + half)
 }
 
 impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> Retraction<MatrixGroup<K, T, N, D>>
