@@ -45,7 +45,7 @@ pub(super) const fn size_of<const N: usize, const D: usize>(basis: &[[[f64; N]; 
             let (rigid, mut place) = (of_size::<N, D>(size), 0);
             while place < D * N * N {
                 let (k, row, column) = (place / (N * N), place / N % N, place % N);
-                if rigid[k][row][column] != basis[k][row][column] {
+                if rigid[k][row][column] - basis[k][row][column] != 0.0 {
                     return None;
                 }
                 place += 1;
