@@ -111,10 +111,12 @@ where
         assert_eq!(found.is_ok(), report.is_ok(), "step {step} of {}", declaration.name);
         let typed = [list(&expected.attitude().matrix()), list(&expected.momentum())].concat();
         let own = state.attitude().iter().chain(state.momentum());
-        let (off, size) = own.zip(&typed).fold((0.0_f64, 1.0_f64), |(off, size), (a, b)| (off.max((a - b).abs()), size.max(b.abs())));
+        let (off, size) =
+            own.zip(&typed).fold((0.0_f64, 1.0_f64), |(off, size), (a, b)| (off.max((a - b).abs()), size.max(b.abs())));
         assert!(off < 1e-12 * size, "step {step} of {}: {off:e}", declaration.name);
     }
-    let energies = [data.energy(&state), compiled.energy(&expected.attitude(), &expected.momentum()).expect("an energy")];
+    let energies =
+        [data.energy(&state), compiled.energy(&expected.attitude(), &expected.momentum()).expect("an energy")];
     assert!((energies[0] - energies[1]).abs() < 1e-11 * energies[1].abs().max(1.0), "{energies:?}");
 }
 
@@ -158,7 +160,8 @@ fn collocation_on_other_groups_is_the_compiled_one() {
 
 /// The text of a free motion whose kinetic energy is that of points fixed in the body.
 fn free(n: usize, generators: &[Vec<f64>]) -> &'static Declaration {
-    let row = |row: &[f64]| format!("[{}]", row.iter().map(|entry| format!("{entry:?}")).collect::<Vec<_>>().join(", "));
+    let row =
+        |row: &[f64]| format!("[{}]", row.iter().map(|entry| format!("{entry:?}")).collect::<Vec<_>>().join(", "));
     let square = |m: &Vec<f64>| format!("[{}]", m.chunks(n).map(row).collect::<Vec<_>>().join(", "));
     let all = generators.iter().map(square).collect::<Vec<_>>().join(", ");
     let text = format!(
@@ -281,8 +284,9 @@ fn an_accuracy_has_the_choice_of_the_compiled_scene() {
     let values = both.described(&[numbers(&body()), numbers(&weight())].concat()).expect("numbers");
     let question = Question { accuracy, attitude: &IDENTITY, velocity: &[0.3, 4.0, 2.0] };
     let (data, choice) = for_accuracy::<Interpreter>(both, &values, question).expect("a choice");
-    let typed = liestep::Stepper::for_accuracy(body() + weight(), accuracy, SO3::identity(), Vector3::new(0.3, 4.0, 2.0))
-        .expect("a choice");
+    let typed =
+        liestep::Stepper::for_accuracy(body() + weight(), accuracy, SO3::identity(), Vector3::new(0.3, 4.0, 2.0))
+            .expect("a choice");
     let schemes = |choice: &liestep::accuracy::Choice| choice.offers().iter().map(|one| one.scheme).collect::<Vec<_>>();
     assert_eq!(schemes(&choice), schemes(typed.choice()));
     let exact = by(both, &[numbers(&body()), numbers(&weight())].concat(), 0.01, "collocation 8").expect("a stepper");

@@ -80,7 +80,8 @@ pub fn stepper<B: Backend<f64>>(
             // The equations in quaternions are several times cheaper, where there are some.
             match on_rotations.then(on_so3) {
                 Some(Ok(stepper)) => Ok(stepper),
-                None | Some(Err(WholeError::Setup(SetupError::NotSeparable { .. } | SetupError::VaryingInertia { .. }))) => {
+                None
+                | Some(Err(WholeError::Setup(SetupError::NotSeparable { .. } | SetupError::VaryingInertia { .. }))) => {
                     Ok(AnyStepper::new(Collocation::<B>::of(declaration, numbers, h, stages)?))
                 }
                 Some(Err(error)) => Err(error),
@@ -97,7 +98,11 @@ pub fn stepper<B: Backend<f64>>(
 /// The numbers, if they are as many as the declaration has.
 fn sized<'a>(declaration: &'static Declaration, numbers: &'a [f64]) -> Result<&'a [f64], LateError> {
     let (expected, found) = (declaration.count(), numbers.len());
-    if expected == found { Ok(numbers) } else { Err(LateError::Size { name: declaration.name.clone(), expected, found }) }
+    if expected == found {
+        Ok(numbers)
+    } else {
+        Err(LateError::Size { name: declaration.name.clone(), expected, found })
+    }
 }
 
 /// A motion whose end is wanted to an accuracy.

@@ -86,11 +86,7 @@ impl<B: Backend<f64>> RotatingScene<B> {
 
 impl<B: Backend<f64>> RotatingConstants<B> {
     /// The outputs of a program of a step, of at most this many numbers.
-    fn run<const N: usize, const M: usize>(
-        &self,
-        program: &Ready<B::Code>,
-        given: [(Array, &[f64]); N],
-    ) -> [f64; M] {
+    fn run<const N: usize, const M: usize>(&self, program: &Ready<B::Code>, given: [(Array, &[f64]); N]) -> [f64; M] {
         let mut outputs = [0.0; M];
         B::run(&program.code, &self.numbers, given, &mut outputs[..program.outputs.min(M)]);
         outputs
@@ -219,11 +215,8 @@ impl<B: Backend<f64>> Effect for RotatingScene<B> {
     fn kick_derivative(constants: &Self::Constants, w: &Directions, velocity: &Vector3<f64>) -> Option<Vector3<f64>> {
         let RotatingScene { stages, numbers, .. } = &constants.scene;
         let program = stages.kick_derivative.as_ref()?;
-        let given = [
-            (Array::Parameters, &**numbers),
-            (Array::Advected, &list(w)),
-            (Array::Velocity, velocity.as_slice()),
-        ];
+        let given =
+            [(Array::Parameters, &**numbers), (Array::Advected, &list(w)), (Array::Velocity, velocity.as_slice())];
         Some(Vector3::from(constants.run(program, given)))
     }
 

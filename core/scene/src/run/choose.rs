@@ -2,15 +2,14 @@
 
 use std::rc::Rc;
 
-use liestep::accuracy::{Accuracy, Candidate, Choice, choose, displacement, of_any_group};
-use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
+use liestep::accuracy::{Accuracy, Choice};
+use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
-use liestep::mechanics::{Effect, Inertia, KineticPart, OnlyKicks, Term as _, WithKinetic, WithoutKinetic};
-use liestep::methods::SplittingScheme;
+use liestep::mechanics::{Effect, Inertia, KineticPart, Term as _, WithKinetic, WithoutKinetic};
 use liestep::motion::{AnyStepper, Integrator as _};
 use liestep::with::{Method, Scheme, densities};
-use liestep::{SO3, SetupError, Stepper};
-use liestep_late::{Declaration, Late, LateError, Slots, WholeError};
+use liestep::{SO3, Stepper};
+use liestep_late::{Declaration, Late, LateError, Question, QuestionError, Slots, WholeError, for_accuracy};
 use nalgebra::Vector3;
 
 use crate::file::body::{Distribution, Kinetic};
@@ -93,7 +92,7 @@ impl Data {
     }
 
     fn stepper(&self, method: Method, h: f64) -> Result<AnyStepper, WholeError> {
-        Whole::of(self.sum, &self.numbers, h, method).map(AnyStepper::new)
+        liestep_late::stepper::<Backend>(self.sum, &self.numbers, h, method)
     }
 }
 
@@ -155,8 +154,7 @@ fn whole_error(error: WholeError) -> Stop {
     }
 }
 
-/// Simulates a scene. A body of (3.13) has a compiled step, and the rest is one program. The step of all else is data: of
-/// other kinetic terms, of those of the file's own, and where an effect enters the step's equation.
+/// Simulates a scene, whose step is data: one program of all terms.
 pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
     match file.run.pace {
         Pace::Accuracy(tolerance) => ask(file, tolerance, listeners),
@@ -225,9 +223,10 @@ fn along_orbit(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop>
 /// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.
 fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
     let J = inertia(file)?;
-    let method = Method::from(file.run.method);
-    if !matches!(method.scheme, Scheme::Step | Scheme::Composition(_)) {
-        return with_exact_body(file, &J, h);
+    let data = |scheme| Data::of(file, &J)?.stepper(Method::from(scheme), h).map_err(whole_error);
+    match file.run.method {
+        Scheme::Step | Scheme::Composition(_) => {}
+        scheme => return data(scheme),
     }
     if let Some(Density::Turn(floor)) = file.run.density {
         let whole: Option<All> = program(file, &J, Moving::of(file, J).as_ref()).map_err(late_error)?;
@@ -241,56 +240,12 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
     if file.turning().next().is_some() {
         return along_orbit(file, J, h);
     }
-    let is_compiled = file.has_compiled_body();
-    let data = || Data::of(file, &J)?.stepper(method, h).map_err(whole_error);
-    let Some(body) = file.body.filter(|_| is_compiled) else { return data() };
-    // The smallest type that fits makes the fastest steps.
-    if let (Scheme::Step, Distribution::Principal(J_d)) = (file.run.method, body.mass) {
-        let body = PrincipalBody { J_d };
-        if let Ok(kicks) = program::<OnlyKicks, ()>(file, &J, None) {
-            return kicks.map_or_else(|| any!(Stepper::new(body, h)), |kicks| any!(Stepper::new(body + kicks, h)));
-        }
-        if let Ok(Some(kicks)) = program::<OnlyKicks, V>(file, &J, None) {
-            return any!(Stepper::new(body + kicks, h));
-        }
-        // A force or a potential that enters the step's equation is evaluated with it, unless much is carried.
-        let whole = sum(file, Moving::of(file, J).as_ref()).map_err(late_error)?;
-        return match program::<WithoutKinetic, Seen>(file, &J, None) {
-            Ok(Some(rest)) if whole.is_some_and(|sum| sum.carried.len() > 1) => any!(Stepper::new(body + rest, h)),
-            _ => data(),
-        };
-    }
-    let body = RigidBody { J_d: J.to_nonstandard() };
-    match program::<WithoutKinetic, Seen>(file, &J, None) {
-        Ok(None) => method.on_any_group(body, h).map_err(Stop::Setup),
-        Ok(Some(rest)) => method.on_any_group(body + rest, h).map_err(Stop::Setup),
-        Err(_) => data(),
-    }
+    data(file.run.method)
 }
 
 /// A missing body: impossible in a file that was read.
 fn nothing() -> Stop {
     Stop::Other("there is no body".to_owned())
-}
-
-/// The stepper of a method that uses only the inertia and the potential.
-fn with_exact_body(file: &SceneFile, J: &Inertia, h: f64) -> Result<AnyStepper, Stop> {
-    let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, J)?;
-    let scheme = match file.run.method {
-        // The potential is zero.
-        Scheme::Exact if file.effects().next().is_none() && file.lagrangian.is_empty() => {
-            Scheme::Splitting(SplittingScheme::STRANG)
-        }
-        scheme => scheme,
-    };
-    Method::from(scheme).stepper(scene, h).map_err(Stop::Setup)
-}
-
-/// The program of the effects, or of an effect that is zero: methods for a potential then need one type only.
-fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
-    let nothing = || Late::parse(Dipole::<f64>::DECLARATION).and_then(|late: Rest| late.with_all(&[0.0; 6]));
-    let rest = program(file, J, None).map_err(late_error)?;
-    rest.map_or_else(nothing, Ok).map_err(late_error)
 }
 
 /// Fewest steps of a run whose number of steps is left open. With fewer, curves would look like polygons.
@@ -309,18 +264,7 @@ fn refined(file: &SceneFile, choice: &Choice) -> Option<(SceneFile, f64)> {
 fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run, Stop> {
     let accuracy = Accuracy { tolerance, horizon: file.run.duration };
     let J = inertia(file)?;
-    let (any, choice) = if file.sum.is_some() {
-        searched(file, &Data::of(file, &J)?, accuracy)?
-    } else {
-        let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, &J)?;
-        let moving = || V::from_column_slice(&file.start.velocity);
-        // (3.13) has the momentum of Euler's equations.
-        let velocity = file.start.rate().or_else(|| Some(J.as_matrix().try_inverse()? * moving()));
-        let velocity = velocity.ok_or_else(nothing)?;
-        let stepper = Stepper::for_accuracy(scene, accuracy, file.start.rotation(), velocity);
-        let stepper = stepper.map_err(Stop::Accuracy)?;
-        (stepper.any().clone(), stepper.choice().clone())
-    };
+    let (any, choice) = searched(file, &Data::of(file, &J)?, accuracy)?;
     let mut run = if let Some((file, step)) = refined(file, &choice) {
         by(&by_steps(&file, step)?, &file, FEWEST, listeners)?
     } else {
@@ -331,22 +275,14 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
     Ok(run)
 }
 
-/// The stepper that is the cheapest for an accuracy, of a scene whose step is data.
+/// The stepper that is the cheapest for an accuracy.
 fn searched(file: &SceneFile, data: &Data, accuracy: Accuracy) -> Result<(AnyStepper, Choice), Stop> {
     let stepper = data.stepper(Method::default(), accuracy.horizon).map_err(whole_error)?;
     let state = file.start.state(&stepper).map_err(Stop::Start)?;
     let velocity = if file.start.is_by_momentum { stepper.velocity(&state) } else { file.start.velocity.clone() };
-    let candidate = |scheme| {
-        let own = data.clone();
-        let make = move |h| match own.stepper(Method::from(scheme), h) {
-            Ok(stepper) => Ok(stepper),
-            Err(WholeError::Setup(error)) => Err(error),
-            Err(_) => Err(SetupError::Method { cause: "has no step of this declaration; take another" }),
-        };
-        Candidate { scheme, make: Box::new(make) }
-    };
-    let candidates: Vec<_> = of_any_group(data.sum.is_self_adjoint).map(candidate).collect();
-    let attitude = &file.start.attitude;
-    let beside = data.sum.displaced(attitude, &displacement(velocity.len()));
-    choose(&candidates, accuracy, [attitude, &beside], &velocity).map_err(Stop::Accuracy)
+    let question = Question { accuracy, attitude: &file.start.attitude, velocity: &velocity };
+    for_accuracy::<Backend>(data.sum, &data.numbers, question).map_err(|error| match error {
+        QuestionError::Whole(error) => whole_error(error),
+        QuestionError::Accuracy(error) => Stop::Accuracy(error),
+    })
 }

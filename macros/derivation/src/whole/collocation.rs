@@ -45,8 +45,12 @@ impl Canonical {
             return Err(StepRefusal::NotQuadratic);
         }
         let seen = writer.seen_through();
-        let programs =
-            Self { lifted: writer.lifted(), momentum: writer.paired(), rates: writer.rates(&seen), seen: writer.inverted(&seen) };
+        let programs = Self {
+            lifted: writer.lifted(),
+            momentum: writer.paired(),
+            rates: writer.rates(&seen),
+            seen: writer.inverted(&seen),
+        };
         let operations = [&programs.momentum, &programs.seen, &programs.rates].map(|program| program.operations.len());
         let is_long = operations.iter().sum::<usize>() > MOST_OPERATIONS;
         if is_long { Err(StepRefusal::TooLong { most: MOST_OPERATIONS }) } else { Ok(programs) }
@@ -162,8 +166,7 @@ impl Writer<'_> {
                         words.negate(product)
                     })
                 };
-                let changes: Vec<Value> =
-                    (0..inverse.len()).map(|at| change_of_inverse(&mut words, at)).collect();
+                let changes: Vec<Value> = (0..inverse.len()).map(|at| change_of_inverse(&mut words, at)).collect();
                 let read = |source: Source| -> Dual {
                     match source.array {
                         Array::Attitude => (Value::Input(source), Value::one_if(source.at == first + at)),

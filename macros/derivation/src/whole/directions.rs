@@ -22,8 +22,7 @@ impl Writer<'_> {
     fn in_directions(&self, program: &Program) -> Program {
         let mut words = Words::default();
         let is_read = |array| program.inputs.iter().any(|source| source.array == array);
-        let mut seen =
-            |array| if is_read(array) { self.seen_from(&mut words, array) } else { Vec::new() };
+        let mut seen = |array| if is_read(array) { self.seen_from(&mut words, array) } else { Vec::new() };
         let (before, after) = (seen(Array::Advected), seen(Array::Next));
         let outputs = words.append(program, |source: Source| match source.array {
             Array::Advected => before[source.at],
