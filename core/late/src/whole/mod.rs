@@ -13,10 +13,11 @@
 //! - Code and texts are shared. What depends on numbers and on `h` are the constants alone, so that a sweep derives once.
 //! - An error leaves a state as it was, and slices of wrong lengths are errors.
 //!
-//! Deliberately not here: splittings, collocation, joints and systems, densities, compensated sums. They are typed, and
+//! Deliberately not here: splittings, collocation, joints and systems, compensated sums. They are typed, and
 //! behind the same [`Propagator`](liestep::motion::Propagator).
 //!
 //! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
+//! `density → varied → {stepper, course, lengths}`,
 //! `inputs → tangent → composed` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
 //! {codes, linear}`.
 
@@ -26,16 +27,22 @@ mod care;
 mod codes;
 mod composed;
 mod constants;
+mod course;
+mod density;
 mod diagnosis;
 mod inputs;
 mod iteration;
+mod lengths;
 mod limit;
 mod linear;
 mod plant;
 mod step;
 mod stepper;
 mod tangent;
+mod varied;
 
 pub use abreast::BackendInLanes;
+pub use course::Course;
 pub use inputs::Transition;
 pub use stepper::{Whole, WholeError};
+pub use varied::Varied;
