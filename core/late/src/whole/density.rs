@@ -57,6 +57,6 @@ impl<B: Backend<f64>> Whole<B> {
             let inertia = Numbered { codes: &*codes, numbers: &numbers }.limit(advected).inertia();
             dot(velocity, &solution(&inertia, rate.as_slice())) / (dot(velocity, velocity) + floor * floor)
         };
-        Ok(self.with_density(rate)?)
+        Ok(self.with_density(rate))
     }
 }

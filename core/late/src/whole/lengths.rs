@@ -32,6 +32,12 @@ impl Memory {
         own
     }
 
+    /// A state of [`Whole`](super::stepper::Whole) with this memory, which stands before the number of steps.
+    pub(super) fn within(self, inner: &[f64]) -> Box<[f64]> {
+        let (before, last) = inner.split_at(inner.len() - 1);
+        before.iter().chain(&self.0).chain(last).copied().collect()
+    }
+
     /// Passes a part of a step.
     pub(super) fn pass(&mut self, length: f64) {
         self.0[3] += length;

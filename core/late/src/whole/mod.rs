@@ -17,7 +17,7 @@
 //! behind the same [`Propagator`](liestep::motion::Propagator).
 //!
 //! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
-//! `density → varied → {stepper, course, lengths}`,
+//! `{density → varied → course, pace} → {stepper, lengths}`,
 //! `inputs → tangent → composed` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
 //! {codes, linear}`.
 
@@ -35,6 +35,7 @@ mod iteration;
 mod lengths;
 mod limit;
 mod linear;
+mod pace;
 mod plant;
 mod step;
 mod stepper;
@@ -44,5 +45,6 @@ mod varied;
 pub use abreast::BackendInLanes;
 pub use course::Course;
 pub use inputs::Transition;
+pub use pace::Paced;
 pub use stepper::{Whole, WholeError};
 pub use varied::Varied;

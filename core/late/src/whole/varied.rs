@@ -78,7 +78,7 @@ struct Room<B: Backend<f64>> {
     stages: Vec<Whole<B>>,
     state: Vec<f64>,
     numbers: Vec<f64>,
-    room: Vec<f64>,
+    rest: Vec<f64>,
 }
 
 /// A value that isn't finite, or a time without one.
@@ -93,32 +93,26 @@ impl<B: Backend<f64>> Whole<B> {
     ///
     /// The errors of [`with`](Self::with) for the numbers at the time zero.
     pub fn driven(&self, course: impl Course + 'static) -> Result<Varied<B>, SetupError> {
-        self.varied()?.driven(course)
+        self.varied().driven(course)
     }
 
     /// A stepper with the lengths of a clock, in units of this one's `h`. After the last length of a clock that isn't
     /// repeated a step is [`StepError::NoLength`].
-    ///
-    /// # Errors
-    ///
-    /// The step can't be made.
-    pub fn with_clock(&self, clock: Clock) -> Result<Varied<B>, SetupError> {
-        Ok(Varied { lengths: Lengths::Clock(clock), ..self.varied()? })
+    #[must_use]
+    pub fn with_clock(&self, clock: Clock) -> Varied<B> {
+        Varied { lengths: Lengths::Clock(clock), ..self.varied() }
     }
 
     /// A stepper of steps of `h/ρ`, the first about `h`. The argument is the rate `G = d/dt ln ρ` of the desired density of
     /// steps, 1/s, as a function of a state's numbers and of the body velocity, see
     /// [`Stepper::with_density`](liestep::Stepper::with_density).
-    ///
-    /// # Errors
-    ///
-    /// The step can't be made.
-    pub fn with_density(&self, rate: impl Fn(&[f64], &[f64]) -> f64 + 'static) -> Result<Varied<B>, SetupError> {
+    #[must_use]
+    pub fn with_density(&self, rate: impl Fn(&[f64], &[f64]) -> f64 + 'static) -> Varied<B> {
         let rate: Rc<Rate> = Rc::new(rate);
-        Ok(Varied { lengths: Lengths::Density(rate), ..self.varied()? })
+        Varied { lengths: Lengths::Density(rate), ..self.varied() }
     }
 
-    fn varied(&self) -> Result<Varied<B>, SetupError> {
+    fn varied(&self) -> Varied<B> {
         let mut begin = 0.0;
         let share = |share| {
             begin += share;
@@ -127,7 +121,7 @@ impl<B: Backend<f64>> Whole<B> {
         let stages = self.stages.shares().map(share).collect();
         let mut layout = self.codes.layout.clone();
         layout.memory += MEMORY;
-        Ok(Varied { whole: self.clone(), course: None, lengths: Lengths::Equal, layout, stages })
+        Varied { whole: self.clone(), course: None, lengths: Lengths::Equal, layout, stages }
     }
 
     /// Takes other numbers for a single step of another length, and folds its constants anew if they depend on a change.
@@ -167,12 +161,6 @@ impl<B: Backend<f64>> Varied<B> {
         if state.len() == self.layout.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
     }
 
-    /// A state of [`Whole`] with this memory.
-    fn with_memory(&self, inner: &[f64], memory: Memory) -> Box<[f64]> {
-        let (before, last) = inner.split_at(inner.len() - 1);
-        before.iter().chain(&memory.0).chain(last).copied().collect()
-    }
-
     fn room(&self) -> Result<Room<B>, SetupError> {
         let own = |&[_, share]: &[f64; 2]| -> Result<Whole<B>, SetupError> {
             let (codes, h) = (Arc::clone(&self.whole.codes), self.whole.h * share);
@@ -181,7 +169,7 @@ impl<B: Backend<f64>> Varied<B> {
         };
         let stages = self.stages.iter().map(own).collect::<Result<_, _>>()?;
         let state = vec![0.0; self.whole.codes.sizes.state()];
-        Ok(Room { stages, state, numbers: self.whole.numbers.to_vec(), room: vec![0.0; self.whole.room()] })
+        Ok(Room { stages, state, numbers: self.whole.numbers.to_vec(), rest: vec![0.0; self.whole.room()] })
     }
 
     /// The numbers at a time.
@@ -270,7 +258,7 @@ impl<B: Backend<f64>> Varied<B> {
 
     /// Makes one step of this start and length in a room's state, and counts it.
     fn advance(&self, room: &mut Room<B>, [start, length]: [f64; 2]) -> Result<u32, StepError> {
-        let Room { stages, state, numbers, room } = room;
+        let Room { stages, state, numbers, rest: room } = room;
         let of = |stage: usize| {
             let [begin, share] = self.stages[stage];
             [start + length * begin, length * share]
@@ -378,7 +366,7 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
     }
 
     fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
-        Ok(self.with_memory(&self.whole.start(attitude, velocity)?, Memory::START))
+        Ok(Memory::START.within(&self.whole.start(attitude, velocity)?))
     }
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
@@ -429,16 +417,15 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
         }
         let last = room.state.len() - 1;
         room.state[last] = state[state.len() - 1];
-        let seen = self.with_memory(&room.state, memory);
+        let mut part = memory.within(&room.state);
         self.forget(&mut room, [start + length, self.whole.h])?;
         let sizes = &self.whole.codes.sizes;
-        let mut part = seen;
         part[sizes.history()..last].copy_from_slice(&room.state[sizes.history()..last]);
         Ok(part)
     }
 
     fn adopt(&self, state: &[f64]) -> Box<[f64]> {
-        self.with_memory(&self.whole.adopt(state), Memory::START)
+        Memory::START.within(&self.whole.adopt(state))
     }
 
     fn cost(&self) -> Option<Cost> {

@@ -1,10 +1,12 @@
 //! Parameters that change with time, clocks and densities: the typed steppers to the bit, closed forms, and the orders.
 
 use declarations::FullTop;
-use liestep::mechanics::Effect as _;
+use liestep::groups::R3;
+use liestep::lagrangian;
+use liestep::mechanics::{Effect, Inertia};
 use liestep::motion::{AnyStepper, Integrator as _, Propagator};
 use liestep::with::{Clock, densities};
-use liestep::{StepError, Stepper};
+use liestep::{SO3, StepError, Stepper};
 use liestep_late::{Declaration, Late, Varied, Whole};
 use nalgebra::{Matrix3, Vector3};
 
@@ -48,7 +50,7 @@ fn turning_values_are_those_of_the_typed_stepper() {
     let typed = Stepper::new(top(), 0.01).expect("a stepper").driven(up).into_any();
     same(&driven, &typed, 10_000, 0.0);
     let clock = || Clock::orbit(0.3, 4.0, 400).expect("a clock");
-    let by_clock = self::whole(1.0, "step").with_clock(clock()).expect("a stepper");
+    let by_clock = self::whole(1.0, "step").with_clock(clock());
     let typed = Stepper::new(top(), 1.0).expect("a stepper").with_clock(clock()).into_any();
     same(&by_clock, &typed, 2_000, 0.0);
     let both = by_clock.driven(upright(&whole)).expect("a stepper");
@@ -63,7 +65,7 @@ fn turning_values_are_those_of_the_typed_stepper() {
 #[test]
 fn a_density_is_that_of_the_typed_stepper() {
     let declaration = Declaration::parse(FullTop::DECLARATION).expect("a declaration");
-    let late = || Late::<liestep::SO3, Vector3<f64>>::of(declaration).unwrap();
+    let late = || Late::<SO3, Vector3<f64>>::of(declaration).unwrap();
     let scene = late().with_all(&liestep_late::numbers(&top())).expect("numbers");
     let typed = Stepper::new(scene.clone(), 0.02).unwrap().with_density(densities::turn(scene, 0.5)).into_any();
     let whole = whole(0.02, "step");
@@ -225,10 +227,113 @@ fn values_that_are_none_are_errors() {
             && driven.time(&[]).is_nan()
             && driven.adopt(&[]).iter().all(|x| !x.is_finite() || *x <= 1.0)
     );
-    let ended = whole.with_clock(Clock::of_lengths([1.0, 2.0]).unwrap()).expect("a stepper");
+    let ended = whole.with_clock(Clock::of_lengths([1.0, 2.0]).unwrap());
     let mut state = ended.start(&IDENTITY, &VELOCITY).expect("a start");
     ended.run(&mut state, 2).expect("steps");
     assert!(matches!(ended.step(&mut state), Err(StepError::NoLength { .. })));
     assert!((ended.time(&state) - 0.03).abs() < 1e-15);
     assert!(matches!(whole.driven(|_: f64, numbers: &mut [f64]| numbers.fill(f64::NAN)), Err(_)));
+}
+
+/// A top whose steps become shorter where it is low.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    given(E_0 = energy),
+    pace = 1.0 / (1.0 + w.dot(&rho).powi(2)),
+    velocity = Omega,
+    l = 0.5 * Omega.dot(&(J * Omega)) - weight * w.dot(&rho),
+    discretise = trapezoid(Cayley),
+)]
+#[derive(Clone, Copy, Debug)]
+struct PacedTop {
+    J: Inertia,
+    weight: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+    energy: f64,
+}
+
+/// A point about an attracting centre, whose steps become longer as r³ᐟ².
+#[lagrangian(
+    group(d = R3),
+    velocity = v,
+    advected(x = d.seen_from(space)),
+    given(E_0 = energy),
+    pace = x.norm() * x.norm().sqrt(),
+    l = 0.5 * v.norm_squared() + GM / x.norm(),
+    discretise = trapezoid,
+)]
+#[derive(Clone, Copy, Debug)]
+struct Orbit {
+    GM: f64,
+    energy: f64,
+}
+
+/// A stepper of a compiled declaration's text.
+fn of_text<E: Effect<Scalar = f64>>(effect: &E, h: f64) -> Whole {
+    let declaration = Declaration::parse(E::DECLARATION).expect("a declaration");
+    let numbers = declaration.described(&liestep_late::numbers(effect)).expect("numbers");
+    Whole::of(declaration, &numbers, h, "step".parse().unwrap()).expect("a stepper")
+}
+
+#[test]
+fn a_pace_is_that_of_the_typed_stepper() {
+    let J = Inertia::from_principal_moments(Vector3::new(1.0, 1.5, 2.0)).expect("an inertia");
+    let top = PacedTop { J, weight: 3.0, rho: Vector3::new(0.5, 0.2, 1.0), up: Vector3::z(), energy: 0.0 };
+    let orbit = Orbit { GM: 1.0, energy: 0.0 };
+    // The pericentre of an orbit with the eccentricity 0.8, in the homogeneous coordinates of R3.
+    let mut near = [1.0, 0.0, 0.0, 0.2, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0];
+    let typed_orbit = Stepper::new(orbit, 0.02).and_then(Stepper::paced).expect("a stepper").into_any();
+    let typed_top = Stepper::new(top, 0.02).and_then(Stepper::paced).expect("a stepper").into_any();
+    for (typed, whole, attitude, velocity) in [
+        (typed_top, of_text(&top, 0.02), &IDENTITY[..], VELOCITY),
+        (typed_orbit, of_text(&orbit, 0.02), &near[..], [0.0, 3.0, 0.0]),
+    ] {
+        let paced = whole.paced().expect("a pace");
+        let mut state = paced.start(attitude, &velocity).expect("a start");
+        let mut other = typed.start(attitude, &velocity).expect("a start");
+        let moving = ..paced.layout().advected().end;
+        let near = |found: &[f64], expected: &[f64], what: &str| {
+            let apart = found.iter().zip(expected).fold(0.0_f64, |apart, (a, b)| apart.max((a - b).abs()));
+            assert!(apart < 1e-10, "{what}: {apart:e}");
+        };
+        for _ in 0..600 {
+            paced.step(&mut state).expect("a step");
+            typed.step(&mut other).expect("a step");
+            near(&state[moving], &other.numbers()[moving], "motion");
+            near(&[paced.time(&state)], &[typed.time(&other)], "time");
+        }
+        near(
+            &[paced.energy(&state), paced.length(&state).unwrap()],
+            &[typed.energy(&other), typed.length(&other).unwrap()],
+            "energy",
+        );
+        let mut found = [0.0; 3];
+        paced.velocity(&state, &mut found);
+        near(&found, &typed.velocity(&other), "velocity");
+        for fraction in [0.0, 0.4, 1.0] {
+            let part = paced.part(&state, fraction).expect("a part");
+            near(&part[moving], &typed.part(&other, fraction).expect("a part").numbers()[moving], "part");
+        }
+    }
+    // The end of a round of Kepler's orbit, by its period.
+    let period = std::f64::consts::TAU;
+    let error = |h: f64| {
+        let paced = of_text(&orbit, h).paced().expect("a pace");
+        let mut state = paced.start(&near, &[0.0, 3.0, 0.0]).expect("a start");
+        while paced.time(&state) + paced.length(&state).unwrap() < period {
+            paced.step(&mut state).expect("a step");
+        }
+        let fraction = (period - paced.time(&state)) / paced.length(&state).unwrap();
+        let end = paced.part(&state, fraction).expect("a part");
+        assert!((paced.time(&end) - period).abs() < 1e-12);
+        ((end[3] - 0.2).powi(2) + end[7].powi(2)).sqrt()
+    };
+    let order = (error(0.02) / error(0.01)).log2();
+    assert!((order - 2.0).abs() < 0.05, "{order}");
+    near[3] = f64::NAN;
+    let paced = of_text(&orbit, 0.02).paced().expect("a pace");
+    assert!(paced.start(&near, &[0.0; 3]).is_err() && paced.step(&mut []).is_err() && paced.energy(&[]).is_nan());
+    assert!(whole(0.01, "step").paced().is_err());
 }

@@ -226,8 +226,10 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             );
             return wrong(&["run", "accuracy"], message);
         }
-        if !matches!(file.run.method, Scheme::Step) {
-            let message = format!("{name} turns, with which every method is of second order; leave `method` out");
+        if !matches!(file.run.method, Scheme::Step | Scheme::Composition(_)) {
+            let message = format!(
+                "{name} changes with time, which a step or a composition can follow; take one, or leave `method` out"
+            );
             return wrong(&["run", "method"], message);
         }
     }

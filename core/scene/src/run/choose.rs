@@ -1,16 +1,14 @@
 //! The choice of a scene's types and method, made once per run.
 
-use std::rc::Rc;
-
 use liestep::accuracy::{Accuracy, Candidate, Choice, choose, displacement, of_any_group};
 use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
-use liestep::mechanics::{Effect, Inertia, KineticPart, OnlyKicks, Term as _, WithKinetic, WithoutKinetic};
+use liestep::mechanics::{Effect, Inertia, KineticPart, OnlyKicks, Term as _, WithoutKinetic};
 use liestep::methods::SplittingScheme;
 use liestep::motion::{AnyStepper, Integrator as _};
-use liestep::with::{Method, Scheme, densities};
+use liestep::with::{Method, Scheme};
 use liestep::{SO3, SetupError, Stepper};
-use liestep_late::{Declaration, Late, LateError, Slots, WholeError};
+use liestep_late::{Course, Declaration, Late, LateError, Slots, WholeError};
 use nalgebra::Vector3;
 
 use crate::file::body::{Distribution, Kinetic};
@@ -28,8 +26,6 @@ type V = Vector3<f64>;
 type Program<K, W = Seen> = Late<SO3, W, K, Backend>;
 /// The program of a file's effects and its force.
 type Rest<W = Seen> = Program<WithoutKinetic, W>;
-/// The program of all terms of a scene.
-type All = Program<WithKinetic, Seen>;
 /// The step of all terms of a scene as data.
 pub type Whole = liestep_late::Whole<Backend>;
 
@@ -187,39 +183,32 @@ macro_rules! any {
     };
 }
 
-/// The stepper of a scene with effects along an orbit, whose values are those of each step's middle.
-fn along_orbit(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop> {
-    macro_rules! turning {
-        ($scene:expr, $values:expr) => {
-            match file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok()) {
-                None => any!(Stepper::new($scene, h).map(|stepper| stepper.driven($values))),
-                Some((clock, _)) => {
-                    any!(Stepper::new($scene, 1.0).map(|stepper| stepper.with_clock(clock).driven($values)))
-                }
-            }
-        };
+/// The numbers of a scene's terms, as functions of time.
+struct SceneCourse {
+    file: SceneFile,
+    J: Inertia,
+    body: Option<Moving>,
+    sum: &'static Declaration,
+}
+
+impl Course for SceneCourse {
+    fn at(&self, time: f64, places: &mut [f64]) {
+        let now = self.sum.described(&numbers(&self.file, &self.J, self.body.as_ref(), time));
+        places.iter_mut().zip(now.unwrap_or_default()).for_each(|(place, number)| *place = number);
     }
-    // A compiled body is no part of the program.
-    let body = Moving::of(file, J).filter(|_| !file.has_compiled_body());
-    let seen = Rc::new(file.clone());
-    macro_rules! scene_and_values {
-        ($rest:ident: $type:ty => $scene:expr, |$advected:ident| $values:expr) => {{
-            let $rest: $type = program(file, &J, body.as_ref()).map_err(late_error)?.ok_or_else(nothing)?;
-            let (scene, whole) = ($scene, $rest);
-            let values = move |time| {
-                let now = whole.clone().with_all(&numbers(&seen, &J, body.as_ref(), time));
-                let $advected = now.as_ref().unwrap_or(&whole).advected();
-                $values
-            };
-            turning!(scene, values)
-        }};
-    }
-    if file.has_compiled_body() {
-        let J_d = J.to_nonstandard();
-        scene_and_values!(rest: Rest => RigidBody { J_d } + rest.clone(), |advected| (Default::default(), advected))
-    } else {
-        scene_and_values!(whole: All => whole.clone(), |advected| advected)
-    }
+}
+
+/// The stepper of a scene with terms that change with time, whose values are those of each step's middle.
+fn over_time(file: &SceneFile, J: Inertia, h: f64, method: Method) -> Result<AnyStepper, Stop> {
+    let Data { sum, numbers } = Data::of(file, &J)?;
+    let course = SceneCourse { file: file.clone(), J, body: Moving::of(file, J), sum };
+    let whole = |h| Whole::of(sum, &numbers, h, method).map_err(whole_error);
+    let clock = file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok());
+    let driven = match clock {
+        None => whole(h)?.driven(course),
+        Some((clock, _)) => whole(1.0)?.with_clock(clock).driven(course),
+    };
+    driven.map(AnyStepper::new).map_err(Stop::Setup)
 }
 
 /// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.
@@ -230,16 +219,15 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
         return with_exact_body(file, &J, h);
     }
     if let Some(Density::Turn(floor)) = file.run.density {
-        let whole: Option<All> = program(file, &J, Moving::of(file, J).as_ref()).map_err(late_error)?;
-        let whole = whole.ok_or_else(nothing)?;
-        let rate = densities::turn(whole.clone(), floor.value);
-        return any!(Stepper::new(whole, h).map(|stepper| stepper.with_density(rate)));
+        let Data { sum, numbers } = Data::of(file, &J)?;
+        let whole = Whole::of(sum, &numbers, h, method).and_then(|whole| whole.turning_evenly(floor.value));
+        return whole.map(AnyStepper::new).map_err(whole_error);
     }
     if let Some(paced) = file.paced() {
         return any!(Stepper::new(paced.paced().map_err(late_error)?, h).and_then(Stepper::paced));
     }
     if file.turning().next().is_some() {
-        return along_orbit(file, J, h);
+        return over_time(file, J, h, method);
     }
     let is_compiled = file.has_compiled_body();
     let data = || Data::of(file, &J)?.stepper(method, h).map_err(whole_error);
