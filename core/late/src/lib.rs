@@ -34,5 +34,5 @@ pub use liestep_derivation::whole::Sizes;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use specialised::specialised;
 pub use term::{Late, numbers};
-pub use whole::{BackendInLanes, Course, Paced, Transition, Varied, Whole, WholeError};
+pub use whole::{BackendInLanes, Between, Course, Paced, Signal, SignalError, Transition, Varied, Whole, WholeError};
 pub use written::{c, rust};

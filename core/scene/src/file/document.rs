@@ -121,9 +121,7 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), Wrong> {
         let message = "nothing moves by a potential alone: a `lagrangian` has a kinetic energy, or the file a `body`";
         return Err((first, message.to_owned()));
     }
-    if sum.energy.is_none() {
-        file.group = Group::of(sum, file.lagrangian[0].increments.clone()).map_err(|error| of_term(&first, error))?;
-    }
+    file.group = Group::of(sum, file.lagrangian[0].increments.clone()).map_err(|error| of_term(&first, error))?;
     file.sum = Some(sum);
     Ok(())
 }

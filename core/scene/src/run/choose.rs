@@ -3,7 +3,7 @@
 use liestep::accuracy::{Accuracy, Candidate, Choice, choose, displacement, of_any_group};
 use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::groups::Advected;
-use liestep::mechanics::{Effect, Inertia, KineticPart, OnlyKicks, Term as _, WithoutKinetic};
+use liestep::mechanics::{Effect, Inertia, KineticPart, OnlyKicks, WithoutKinetic};
 use liestep::methods::SplittingScheme;
 use liestep::motion::{AnyStepper, Integrator as _};
 use liestep::with::{Method, Scheme};
@@ -223,8 +223,10 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
         let whole = Whole::of(sum, &numbers, h, method).and_then(|whole| whole.turning_evenly(floor.value));
         return whole.map(AnyStepper::new).map_err(whole_error);
     }
-    if let Some(paced) = file.paced() {
-        return any!(Stepper::new(paced.paced().map_err(late_error)?, h).and_then(Stepper::paced));
+    if file.paced().is_some() {
+        let Data { sum, numbers } = Data::of(file, &J)?;
+        let paced = Whole::of(sum, &numbers, h, method).and_then(|whole| Ok(whole.paced()?));
+        return paced.map(AnyStepper::new).map_err(whole_error);
     }
     if file.turning().next().is_some() {
         return over_time(file, J, h, method);
