@@ -3,6 +3,8 @@
 
 #[path = "whole/tangent.rs"]
 mod tangent;
+#[path = "whole/varied.rs"]
+mod varied;
 
 use declarations::FullTop;
 use liestep::effects::{RigidBody, Torque};

@@ -27,8 +27,8 @@ const fn refused<T>(cause: &'static str) -> Result<T, WholeError> {
 /// The stepper of a declaration with the [numbers](Declaration::numbers) of all its parameters, the step `h`, s, and a method.
 ///
 /// The declared step and its compositions are those of [`Whole`] on any group. Collocation takes the continuous limit of the
-/// Lagrangian, on any group that linear and quadratic relations define. Splittings, the exact motion, compensated sums and
-/// steps by a density are those of [`Method::stepper`], on SO(3) alone.
+/// Lagrangian, on any group that linear and quadratic relations define. Splittings, the exact motion and compensated sums are
+/// those of [`Method::stepper`], on SO(3) alone.
 ///
 /// # Examples
 ///
@@ -63,15 +63,28 @@ pub fn stepper<B: Backend<f64>>(
     h: f64,
     method: Method,
 ) -> Result<AnyStepper, WholeError> {
-    let has_own_steps = matches!(method.scheme, Scheme::Step | Scheme::Composition(_));
-    if has_own_steps && !method.compensated && !method.varies() {
-        return Ok(AnyStepper::new(Whole::<B>::of(declaration, numbers, h, method)?));
-    }
-    if declaration.has_force && !has_own_steps {
-        return refused("needs a scene without a force; take the step, or leave the force out");
-    }
     if declaration.energy.is_some() {
+        if method.is_plain() {
+            return Ok(AnyStepper::new(Whole::<B>::of(declaration, numbers, h, method)?.paced()?));
+        }
         return refused("of a scene with a pace is its own step; take the step alone");
+    }
+    let has_own_steps = matches!(method.scheme, Scheme::Step | Scheme::Composition(_));
+    match (method.scheme, method.floor) {
+        (Scheme::Step, Some(_)) if method.compensated || method.substeps > 1 => {
+            return refused("with a density is the declared step alone; take neither `compensated` nor `substeps`");
+        }
+        (Scheme::Step, Some(floor)) => {
+            let whole = Whole::<B>::of(declaration, numbers, h, Method::default())?;
+            return Ok(AnyStepper::new(whole.turning_evenly(floor)?));
+        }
+        (_, None) if has_own_steps && !method.compensated => {
+            return Ok(AnyStepper::new(Whole::<B>::of(declaration, numbers, h, method)?));
+        }
+        _ if declaration.has_force && !has_own_steps => {
+            return refused("needs a scene without a force; take the step, or leave the force out");
+        }
+        _ => {}
     }
     let on_rotations = is_of_rotations::<B>(declaration)?;
     let on_so3 = || Ok(method.stepper(RotatingScene::<B>::of(declaration, sized(declaration, numbers)?)?, h)?);

@@ -121,9 +121,7 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), Wrong> {
         let message = "nothing moves by a potential alone: a `lagrangian` has a kinetic energy, or the file a `body`";
         return Err((first, message.to_owned()));
     }
-    if sum.energy.is_none() {
-        file.group = Group::of(sum, file.lagrangian[0].increments.clone()).map_err(|error| of_term(&first, error))?;
-    }
+    file.group = Group::of(sum, file.lagrangian[0].increments.clone()).map_err(|error| of_term(&first, error))?;
     file.sum = Some(sum);
     Ok(())
 }
@@ -226,8 +224,10 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             );
             return wrong(&["run", "accuracy"], message);
         }
-        if !matches!(file.run.method, Scheme::Step) {
-            let message = format!("{name} turns, with which every method is of second order; leave `method` out");
+        if !matches!(file.run.method, Scheme::Step | Scheme::Composition(_)) {
+            let message = format!(
+                "{name} changes with time, which a step or a composition can follow; take one, or leave `method` out"
+            );
             return wrong(&["run", "method"], message);
         }
     }

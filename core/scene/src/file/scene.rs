@@ -248,11 +248,6 @@ impl SceneFile {
         self.body.map(|body| body.kinetic).unwrap_or_default()
     }
 
-    /// Whether it has a body of the library with a compiled step, that of (3.13).
-    pub(crate) fn has_compiled_body(&self) -> bool {
-        self.body.is_some_and(|body| body.kinetic == Kinetic::Rigid)
-    }
-
     /// The inertia at the identity attitude; none for a Lagrangian that isn't of a body.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
         let own = self.lagrangian.iter().filter(|own| own.declaration.has_kinetic && self.group.is_rotation());

@@ -1,15 +1,11 @@
 //! The choice of a scene's types and method, made once per run.
 
-use std::rc::Rc;
-
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
-use liestep::groups::Advected;
-use liestep::mechanics::{Effect, Inertia, KineticPart, Term as _, WithKinetic, WithoutKinetic};
+use liestep::mechanics::{Effect, Inertia};
 use liestep::motion::{AnyStepper, Integrator as _};
-use liestep::with::{Method, Scheme, densities};
-use liestep::{SO3, Stepper};
-use liestep_late::{Declaration, Late, LateError, Question, QuestionError, Slots, WholeError, for_accuracy};
+use liestep::with::{Method, Scheme};
+use liestep_late::{Course, Declaration, LateError, Question, QuestionError, WholeError, for_accuracy};
 use nalgebra::Vector3;
 
 use crate::file::body::{Distribution, Kinetic};
@@ -20,15 +16,6 @@ use crate::file::words::in_files;
 use crate::run::course::{MemberStart, course, sample, watches};
 use crate::run::make::{Listeners, Run, Stop, make};
 
-/// The advected vectors of all terms of a scene in one tuple; unused ones are zero.
-type Seen = (V, V, V, V, V, V);
-type V = Vector3<f64>;
-/// A program that sums several terms of a scene.
-type Program<K, W = Seen> = Late<SO3, W, K, Backend>;
-/// The program of a file's effects and its force.
-type Rest<W = Seen> = Program<WithoutKinetic, W>;
-/// The program of all terms of a scene.
-type All = Program<WithKinetic, Seen>;
 /// The step of all terms of a scene as data.
 pub type Whole = liestep_late::Whole<Backend>;
 
@@ -64,16 +51,6 @@ fn sum(file: &SceneFile, body: Option<&Moving>) -> Result<Option<&'static Declar
     let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
     let terms = body.chain(lagrangians).chain(listed).chain(forces).collect::<Result<Vec<_>, _>>()?;
     if terms.is_empty() { Ok(None) } else { Declaration::sum(&terms).map(Some) }
-}
-
-/// The program of the sum.
-fn program<K: KineticPart, W: Advected<SO3> + Slots>(
-    file: &SceneFile,
-    J: &Inertia,
-    body: Option<&Moving>,
-) -> Result<Option<Program<K, W>>, LateError> {
-    let Some(sum) = sum(file, body)? else { return Ok(None) };
-    Late::of(sum)?.with_all(&numbers(file, J, body, 0.0)).map(Some)
 }
 
 /// A scene whose step is data: the sum of all terms, on any group.
@@ -121,7 +98,7 @@ pub(crate) fn member(file: &SceneFile, whole: &Whole) -> Result<MemberStart, Sto
 fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
     let own = match (file.body, file.effects().next()) {
         (Some(body), _) => return Ok(body.J),
-        (None, None) => Inertia::from_principal_moments(V::repeat(1.0)),
+        (None, None) => Inertia::from_principal_moments(Vector3::repeat(1.0)),
         (None, Some(_)) => Inertia::new(file.inertia().ok_or_else(nothing)?),
     };
     own.map_err(|error| Stop::Other(error.to_string()))
@@ -137,14 +114,7 @@ fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Moving>, time: f64) -> V
 }
 
 fn late_error(error: LateError) -> Stop {
-    Stop::Other(match error {
-        LateError::Advected { .. } => {
-            "beside an `orbit`, a `density` or a method with an exact motion a scene advects six vectors at most, and \
-             nothing else"
-                .to_owned()
-        }
-        other => in_files(&other.to_string()),
-    })
+    Stop::Other(in_files(&error.to_string()))
 }
 
 fn whole_error(error: WholeError) -> Stop {
@@ -179,68 +149,56 @@ pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
     Ok((stepper, state))
 }
 
-macro_rules! any {
-    ($stepper:expr) => {
-        $stepper.map(Stepper::into_any).map_err(Stop::Setup)
-    };
+/// The numbers of a scene's terms, as functions of time.
+struct SceneCourse {
+    file: SceneFile,
+    J: Inertia,
+    body: Option<Moving>,
+    sum: &'static Declaration,
 }
 
-/// The stepper of a scene with effects along an orbit, whose values are those of each step's middle.
-fn along_orbit(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop> {
-    macro_rules! turning {
-        ($scene:expr, $values:expr) => {
-            match file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok()) {
-                None => any!(Stepper::new($scene, h).map(|stepper| stepper.driven($values))),
-                Some((clock, _)) => {
-                    any!(Stepper::new($scene, 1.0).map(|stepper| stepper.with_clock(clock).driven($values)))
-                }
-            }
-        };
+impl Course for SceneCourse {
+    fn at(&self, time: f64, places: &mut [f64]) {
+        let now = self.sum.described(&numbers(&self.file, &self.J, self.body.as_ref(), time));
+        places.iter_mut().zip(now.unwrap_or_default()).for_each(|(place, number)| *place = number);
     }
-    // A compiled body is no part of the program.
-    let body = Moving::of(file, J).filter(|_| !file.has_compiled_body());
-    let seen = Rc::new(file.clone());
-    macro_rules! scene_and_values {
-        ($rest:ident: $type:ty => $scene:expr, |$advected:ident| $values:expr) => {{
-            let $rest: $type = program(file, &J, body.as_ref()).map_err(late_error)?.ok_or_else(nothing)?;
-            let (scene, whole) = ($scene, $rest);
-            let values = move |time| {
-                let now = whole.clone().with_all(&numbers(&seen, &J, body.as_ref(), time));
-                let $advected = now.as_ref().unwrap_or(&whole).advected();
-                $values
-            };
-            turning!(scene, values)
-        }};
-    }
-    if file.has_compiled_body() {
-        let J_d = J.to_nonstandard();
-        scene_and_values!(rest: Rest => RigidBody { J_d } + rest.clone(), |advected| (Default::default(), advected))
-    } else {
-        scene_and_values!(whole: All => whole.clone(), |advected| advected)
-    }
+}
+
+/// The stepper of a scene with terms that change with time, whose values are those of each step's middle.
+fn over_time(file: &SceneFile, J: Inertia, h: f64, method: Method) -> Result<AnyStepper, Stop> {
+    let Data { sum, numbers } = Data::of(file, &J)?;
+    let course = SceneCourse { file: file.clone(), J, body: Moving::of(file, J), sum };
+    let whole = |h| Whole::of(sum, &numbers, h, method).map_err(whole_error);
+    let clock = file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok());
+    let driven = match clock {
+        None => whole(h)?.driven(course),
+        Some((clock, _)) => whole(1.0)?.with_clock(clock).driven(course),
+    };
+    driven.map(AnyStepper::new).map_err(Stop::Setup)
 }
 
 /// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.
 fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
     let J = inertia(file)?;
-    let data = |scheme| Data::of(file, &J)?.stepper(Method::from(scheme), h).map_err(whole_error);
-    match file.run.method {
-        Scheme::Step | Scheme::Composition(_) => {}
-        scheme => return data(scheme),
+    let method = Method::from(file.run.method);
+    let data = || Data::of(file, &J)?.stepper(method, h).map_err(whole_error);
+    if !matches!(method.scheme, Scheme::Step | Scheme::Composition(_)) {
+        return data();
     }
     if let Some(Density::Turn(floor)) = file.run.density {
-        let whole: Option<All> = program(file, &J, Moving::of(file, J).as_ref()).map_err(late_error)?;
-        let whole = whole.ok_or_else(nothing)?;
-        let rate = densities::turn(whole.clone(), floor.value);
-        return any!(Stepper::new(whole, h).map(|stepper| stepper.with_density(rate)));
+        let Data { sum, numbers } = Data::of(file, &J)?;
+        let whole = Whole::of(sum, &numbers, h, method).and_then(|whole| whole.turning_evenly(floor.value));
+        return whole.map(AnyStepper::new).map_err(whole_error);
     }
-    if let Some(paced) = file.paced() {
-        return any!(Stepper::new(paced.paced().map_err(late_error)?, h).and_then(Stepper::paced));
+    if file.paced().is_some() {
+        let Data { sum, numbers } = Data::of(file, &J)?;
+        let paced = Whole::of(sum, &numbers, h, method).and_then(|whole| Ok(whole.paced()?));
+        return paced.map(AnyStepper::new).map_err(whole_error);
     }
     if file.turning().next().is_some() {
-        return along_orbit(file, J, h);
+        return over_time(file, J, h, method);
     }
-    data(file.run.method)
+    data()
 }
 
 /// A missing body: impossible in a file that was read.
