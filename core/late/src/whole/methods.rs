@@ -93,8 +93,7 @@ pub fn stepper<B: Backend<f64>>(
             // The equations in quaternions are several times cheaper, where there are some.
             match on_rotations.then(on_so3) {
                 Some(Ok(stepper)) => Ok(stepper),
-                None
-                | Some(Err(WholeError::Setup(SetupError::NotSeparable { .. } | SetupError::VaryingInertia { .. }))) => {
+                None | Some(Err(WholeError::Setup(SetupError::NotSeparable { .. } | SetupError::VaryingInertia))) => {
                     Ok(AnyStepper::new(Collocation::<B>::of(declaration, numbers, h, stages)?))
                 }
                 Some(Err(error)) => Err(error),
