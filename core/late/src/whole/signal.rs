@@ -115,7 +115,7 @@ impl Signal {
 
     /// The number of the last time up to this one, with another one behind it if values are on lines.
     fn piece(&self, time: f64) -> usize {
-        let most = self.times.len() - if self.between == Between::Lines { 1 } else { 0 };
+        let most = self.times.len() - usize::from(self.between == Between::Lines);
         self.times.partition_point(|&own| own <= time).clamp(1, most) - 1
     }
 

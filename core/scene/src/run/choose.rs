@@ -1,5 +1,7 @@
 //! The choice of a scene's types and method, made once per run.
 
+use std::cell::RefCell;
+
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::mechanics::{Effect, Inertia};
@@ -63,8 +65,8 @@ struct Data {
 impl Data {
     fn of(file: &SceneFile, J: &Inertia) -> Result<Self, Stop> {
         let body = Moving::of(file, *J);
-        let sum = sum(file, body.as_ref()).map_err(late_error)?.ok_or_else(nothing)?;
-        let numbers = sum.described(&numbers(file, J, body.as_ref(), 0.0)).map_err(late_error)?;
+        let sum = sum(file, body.as_ref()).map_err(|error| late_error(&error))?.ok_or_else(nothing)?;
+        let numbers = sum.described(&numbers(file, J, body.as_ref(), 0.0)).map_err(|error| late_error(&error))?;
         Ok(Self { sum, numbers })
     }
 
@@ -77,7 +79,7 @@ impl Data {
 /// along orbits.
 pub(crate) fn whole(file: &SceneFile) -> Option<Whole> {
     let is_of_one_kind = matches!(file.run.method, Scheme::Step) && !file.has_steps_of_its_own();
-    let J = inertia(file).ok().filter(|_| is_of_one_kind && file.turning().next().is_none())?;
+    let J = inertia(file).ok().filter(|_| is_of_one_kind && file.changing().is_none())?;
     let Pace::Step { step, .. } = file.run.pace else { return None };
     let Data { sum, numbers } = Data::of(file, &J).ok()?;
     Whole::of(sum, &numbers, step, Method::default()).ok()
@@ -113,13 +115,13 @@ fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Moving>, time: f64) -> V
     body.chain(lagrangians).chain(listed).chain(forces).collect()
 }
 
-fn late_error(error: LateError) -> Stop {
+fn late_error(error: &LateError) -> Stop {
     Stop::Other(in_files(&error.to_string()))
 }
 
 fn whole_error(error: WholeError) -> Stop {
     match error {
-        WholeError::Declaration(error) => late_error(error),
+        WholeError::Declaration(error) => late_error(&error),
         WholeError::Setup(error) => Stop::Setup(error),
     }
 }
@@ -151,7 +153,7 @@ pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
 
 /// The numbers of a scene's terms, as functions of time.
 struct SceneCourse {
-    file: SceneFile,
+    file: RefCell<SceneFile>,
     J: Inertia,
     body: Option<Moving>,
     sum: &'static Declaration,
@@ -159,15 +161,24 @@ struct SceneCourse {
 
 impl Course for SceneCourse {
     fn at(&self, time: f64, places: &mut [f64]) {
-        let now = self.sum.described(&numbers(&self.file, &self.J, self.body.as_ref(), time));
-        places.iter_mut().zip(now.unwrap_or_default()).for_each(|(place, number)| *place = number);
+        self.over([time, 0.0], places);
+    }
+
+    fn over(&self, [start, length]: [f64; 2], places: &mut [f64]) {
+        let mut file = self.file.borrow_mut();
+        let has_all = file.set_over([start, length]);
+        let now = self.sum.described(&numbers(&file, &self.J, self.body.as_ref(), start + length * 0.5));
+        match now {
+            Ok(now) if has_all => places.copy_from_slice(&now),
+            _ => places.fill(f64::NAN),
+        }
     }
 }
 
 /// The stepper of a scene with terms that change with time, whose values are those of each step's middle.
 fn over_time(file: &SceneFile, J: Inertia, h: f64, method: Method) -> Result<AnyStepper, Stop> {
     let Data { sum, numbers } = Data::of(file, &J)?;
-    let course = SceneCourse { file: file.clone(), J, body: Moving::of(file, J), sum };
+    let course = SceneCourse { file: RefCell::new(file.clone()), J, body: Moving::of(file, J), sum };
     let whole = |h| Whole::of(sum, &numbers, h, method).map_err(whole_error);
     let clock = file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok());
     let driven = match clock {
@@ -195,7 +206,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
         let paced = Whole::of(sum, &numbers, h, method).and_then(|whole| Ok(whole.paced()?));
         return paced.map(AnyStepper::new).map_err(whole_error);
     }
-    if file.turning().next().is_some() {
+    if file.changing().is_some() {
         return over_time(file, J, h, method);
     }
     data()
