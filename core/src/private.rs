@@ -25,6 +25,10 @@ pub use crate::solving::{
     Solvability, TurningLimits, has_sufficed, largest_fraction, may_suffice, safe, six_digits, turning_limits,
 };
 
+// Coefficients, convergence test and sums of a collocation, for stages that are slices.
+pub use crate::methods::{Changes, Coefficients, Next};
+pub use crate::numbers::two_sum;
+
 // Constants of a step, in one place for steps that are programs.
 pub use crate::motion::declared::RATIO;
 pub use crate::motion::summation::{STEPS_BETWEEN_CHECKS, STEPS_BETWEEN_SEVERAL, TOLERATED};

@@ -34,5 +34,8 @@ pub use liestep_derivation::whole::Sizes;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use specialised::specialised;
 pub use term::{Late, numbers};
-pub use whole::{BackendInLanes, Transition, Whole, WholeError};
+pub use whole::{
+    BackendInLanes, Between, Course, Paced, Question, QuestionError, Signal, SignalError, Transition, Varied, Whole,
+    WholeError, for_accuracy, stepper,
+};
 pub use written::{c, rust};

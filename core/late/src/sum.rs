@@ -255,6 +255,7 @@ pub(crate) fn summed(terms: &[&StagedDeclaration], in_frames: bool) -> Result<St
         factors: first.factors.clone(),
         derivation: joined(|staged| &staged.derivation, "\n"),
         has_kinetic: terms.iter().any(|staged| staged.has_kinetic),
+        has_force: terms.iter().any(|staged| staged.has_force),
         parts: [0, 1, 2].map(|part| terms.iter().any(|staged| staged.parts[part])),
         denominators: solved().map(|staged| staged.denominators).max().unwrap_or(0),
         has_constant_inertia: terms.iter().all(|staged| staged.has_constant_inertia),

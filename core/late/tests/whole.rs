@@ -5,6 +5,8 @@
 mod special_linear;
 #[path = "whole/tangent.rs"]
 mod tangent;
+#[path = "whole/varied.rs"]
+mod varied;
 
 use declarations::FullTop;
 use liestep::effects::{RigidBody, Torque};

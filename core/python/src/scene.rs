@@ -1,26 +1,14 @@
 //! A declaration with numbers as a scene to run, for any group and any advected parameters.
 
-use std::sync::Arc;
-
-use liestep::accuracy::{Accuracy, Candidate, Choice, choose, displacement, of_any_group};
-use liestep::groups::{Advected, CayleyRetraction, Given, LieGroup, Retraction};
-use liestep::mechanics::{Scene as Stepped, WithKinetic};
+use liestep::accuracy::{Accuracy, Choice};
 use liestep::motion::AnyStepper;
-use liestep::numbers::Entries as _;
-use liestep::with::{Method, Steppable};
-use liestep::{SO3, SetupError, Stepper};
-use liestep_late::{Declaration, LateError, Role, Slots, Whole, WholeError};
-use nalgebra::SVector;
+use liestep::with::Method;
+use liestep_late::{Declaration, LateError, Question, QuestionError, Role, Whole, WholeError, for_accuracy, stepper};
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
 use crate::failure::Failure;
 use crate::run::{Course, RunRecord, record};
 use crate::start::{Start, started};
-
-type V<const N: usize> = SVector<f64, N>;
-/// The advected vectors on SO(3) where there are several, and those beside the energy of a pace.
-type Four = (V<3>, V<3>, V<3>, V<3>);
-type WithEnergy = (Given<f64>, V<3>, V<3>, V<3>);
 
 /// The back end of programs: machine code if that feature is on, otherwise the interpreter, with the same bits.
 #[cfg(feature = "machine")]
@@ -28,48 +16,9 @@ pub(crate) type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
 pub(crate) type Backend = liestep_late::Interpreter;
 
-type Late<G, W, K> = liestep_late::Late<G, W, K, Backend>;
-type Sum<G, W> = Late<G, W, WithKinetic>;
-
-/// A declaration whose group and advected parameters are types inside, and numbers outside.
-pub(crate) trait Steps: Send + Sync {
-    /// The stepper of the declaration with other numbers, by a method.
-    fn stepper(&self, numbers: &[f64], method: (Method, f64)) -> Result<AnyStepper, Failure>;
-
-    /// The stepper by the method and the step that are the cheapest for an accuracy.
-    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<(AnyStepper, Choice), Failure>;
-}
-
-impl<G, W> Steps for Sum<G, W>
-where
-    G: LieGroup<Scalar = f64> + Steppable<Self>,
-    W: Advected<G> + Slots + Send + Sync + 'static,
-    CayleyRetraction: Retraction<G>,
-    Self: Stepped<Scalar = f64, Group = G, Advected = W> + Send + Sync,
-{
-    fn stepper(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
-        let sum = self.clone().with_all(numbers)?;
-        method.stepper(sum, h).map_err(|error| Failure::setup(&error))
-    }
-
-    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<(AnyStepper, Choice), Failure> {
-        let layout = G::factors();
-        let (attitude, velocity) = (start.attitude(&layout)?, start.velocity(&layout)?);
-        let read = |numbers: &[f64]| numbers.to_vec().into_iter();
-        let (mut entries, mut components) = (read(&attitude), read(velocity));
-        let attitude = G::from_matrix_unchecked(G::Matrix::from_entries(&mut || entries.next().unwrap_or(f64::NAN)));
-        let velocity = G::Vector::from_entries(&mut || components.next().unwrap_or(f64::NAN));
-        let sum = self.clone().with_all(numbers)?;
-        let stepper =
-            Stepper::for_accuracy(sum, accuracy, attitude, velocity).map_err(|error| Failure::setup(&error))?;
-        Ok((stepper.any().clone(), stepper.choice().clone()))
-    }
-}
-
 /// A scene: the sum of all terms in one program, with the numbers of all, term by term.
 #[derive(Clone)]
 pub(crate) struct Scene {
-    steps: Arc<dyn Steps>,
     declaration: &'static Declaration,
     numbers: Vec<f64>,
     has_force: bool,
@@ -86,7 +35,7 @@ impl Scene {
             let message = "a scene with a force is made by its own step alone: leave the method out";
             return Err(Failure::Of("SetupError", message.to_owned()));
         }
-        self.steps.stepper(numbers, (method, h))
+        Ok(stepper::<Backend>(self.declaration, numbers, h, method)?)
     }
 
     /// Whether a step of `−h` undoes one of `h`, as methods of a higher order require.
@@ -108,7 +57,14 @@ impl Scene {
         course: &Course,
     ) -> Result<(RunRecord, Choice), Failure> {
         let accuracy = Accuracy { tolerance, horizon: course.until };
-        let (stepper, choice) = self.steps.accurate(&self.numbers, accuracy, start)?;
+        let layout = Whole::<Backend>::layout_of(self.declaration)?;
+        let (attitude, velocity) = (start.attitude(&layout.factors)?, start.velocity(&layout.factors)?);
+        let question = Question { accuracy, attitude: &attitude, velocity };
+        let found = for_accuracy::<Backend>(self.declaration, &self.numbers, question);
+        let (stepper, choice) = found.map_err(|error| match error {
+            QuestionError::Whole(error) => error.into(),
+            QuestionError::Accuracy(error) => Failure::setup(&error),
+        })?;
         Ok((record(&stepper, started(&stepper, start)?, course)?, choice))
     }
 
@@ -138,39 +94,6 @@ impl Scene {
     }
 }
 
-/// A declaration on any group, whose step is data: its first stepper has the code that all others share.
-struct Data(&'static Declaration);
-
-impl Data {
-    fn whole(&self, numbers: &[f64], method: Method, h: f64) -> Result<AnyStepper, WholeError> {
-        Whole::<Backend>::of(self.0, numbers, h, method).map(AnyStepper::new)
-    }
-}
-
-impl Steps for Data {
-    fn stepper(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
-        Ok(self.whole(numbers, method, h)?)
-    }
-
-    fn accurate(&self, numbers: &[f64], accuracy: Accuracy, start: &Start) -> Result<(AnyStepper, Choice), Failure> {
-        let stepper = self.stepper(numbers, (Method::default(), accuracy.horizon))?;
-        let factors = &stepper.layout().factors;
-        let (attitude, velocity) = (start.attitude(factors)?, start.velocity(factors)?);
-        let candidate = |scheme| {
-            let (own, numbers) = (Self(self.0), numbers.to_vec());
-            let make = move |h| match own.whole(&numbers, Method::from(scheme), h) {
-                Ok(stepper) => Ok(stepper),
-                Err(WholeError::Setup(error)) => Err(error),
-                Err(_) => Err(SetupError::Method { cause: "has no step of this declaration; take another" }),
-            };
-            Candidate { scheme, make: Box::new(make) }
-        };
-        let candidates: Vec<_> = of_any_group(self.0.is_self_adjoint).map(candidate).collect();
-        let beside = self.0.displaced(&attitude, &displacement(velocity.len()));
-        choose(&candidates, accuracy, [&attitude, &beside], velocity).map_err(|error| Failure::setup(&error))
-    }
-}
-
 impl From<WholeError> for Failure {
     fn from(error: WholeError) -> Self {
         match error {
@@ -178,16 +101,6 @@ impl From<WholeError> for Failure {
             WholeError::Setup(error) => Self::setup(&error),
         }
     }
-}
-
-/// The steps of a declaration, if its group and its advected parameters are these types.
-fn typed<G, W>(sum: &'static Declaration, numbers: &[f64]) -> Result<Arc<dyn Steps>, LateError>
-where
-    G: LieGroup<Scalar = f64>,
-    W: Advected<G> + Slots + 'static,
-    Sum<G, W>: Steps + 'static,
-{
-    Ok(Arc::new(Sum::<G, W>::of(sum)?.with_all(numbers)?))
 }
 
 /// The scene of the sum of these terms, with the numbers of all.
@@ -201,23 +114,5 @@ pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<S
         return Err(Failure::Of("DeclarationError", message.to_owned()));
     }
     let has_force = terms.iter().any(|term| term.role == Role::Force);
-    macro_rules! first_that_fits {
-        ($sum:expr; $($group:ty: $($carried:ty),+;)+) => {$($(
-            match typed::<$group, $carried>($sum, numbers) {
-                Err(LateError::Group { .. } | LateError::Advected { .. }) => {}
-                steps => {
-                    return Ok(Scene { steps: steps?, declaration: $sum, numbers: numbers.to_vec(), has_force });
-                }
-            }
-        )+)+};
-    }
-    // A sum with more vectors than the types have advects the directions of space instead.
-    for in_frames in [false, true] {
-        let sum = if in_frames && sum.energy.is_none() { Declaration::sum_in_frames(terms)? } else { sum };
-        first_that_fits! {
-            sum;
-            SO3: V<3>, Four, WithEnergy;
-        }
-    }
-    Ok(Scene { steps: Arc::new(Data(sum)), declaration: sum, numbers: numbers.to_vec(), has_force })
+    Ok(Scene { declaration: sum, numbers: numbers.to_vec(), has_force })
 }

@@ -26,7 +26,7 @@ mod tests;
 pub use chain::{Chain, ChainStepper, Link, LinkedBodies, Weights};
 pub use composition::{Composition, CompositionScheme};
 #[doc(hidden)]
-pub use gauss::{CollocationMemory, CotangentCarry};
+pub use gauss::{Changes, Coefficients, CollocationMemory, CotangentCarry, Next};
 pub use gauss::{CotangentGauss, Gauss};
 pub use multibody::{BodyPart, Constraint, Joint, Multibody, MultibodyStepper, Place, Redundancy, Slope};
 pub(crate) use splitting::has_force_gradient;

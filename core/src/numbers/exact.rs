@@ -6,7 +6,8 @@ use nalgebra::SimdBool as _;
 
 /// `a + b` rounded and its rounding error, by Knuth's sum, which works for any order of the sizes.
 #[hot]
-pub(crate) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
+#[must_use]
+pub fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
     let of_b = sum - a;
     (sum, (a - (sum - of_b)) + (b - of_b))

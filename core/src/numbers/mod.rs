@@ -44,7 +44,9 @@ pub use digest::Digest;
 pub(crate) use dual::{Dual, Number};
 pub use entries::Entries;
 pub(crate) use entries::{entries_of_value, flag, of_tuples, replaced, sum, zero};
-pub(crate) use exact::{carried_sum, two_square, two_sum};
+#[doc(hidden)]
+pub use exact::two_sum;
+pub(crate) use exact::{carried_sum, two_square};
 pub(crate) use history::{History, Parabola, Polynomial};
 pub use join::{Join, Twice};
 pub use lanes::{InLanes, Lanes, Numbers};

@@ -99,6 +99,30 @@ impl Clock {
         Self::of_lengths(lengths).map(Self::repeated).ok()
     }
 
+    /// The length of a step, numbered from zero, in units of the stepper's `h`; none after the last.
+    #[must_use]
+    pub fn length(&self, step: u64) -> Option<f64> {
+        self.lengths.get(self.place(step).1).copied()
+    }
+
+    /// The length of the step before one of this number; before the first, of a clock of rounds, that of the last.
+    #[must_use]
+    pub fn length_before(&self, step: u64) -> Option<f64> {
+        match step.checked_sub(1) {
+            None => self.lengths.last().copied().filter(|_| self.is_repeated),
+            Some(before) => self.length(before),
+        }
+    }
+
+    /// The time after this number of steps, in units of the stepper's `h`; NaN after the last.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // a number of rounds
+    pub fn time(&self, steps: u64) -> f64 {
+        let (rounds, place) = self.place(steps);
+        let [within, round] = [self.times.get(place), self.times.last()].map(|time| time.copied().unwrap_or(f64::NAN));
+        round * rounds as f64 + within
+    }
+
     /// The number of a step's round, and its place in the round.
     fn place(&self, step: u64) -> (u64, usize) {
         let round = self.lengths.len() as u64;
@@ -157,23 +181,14 @@ impl<S: Effect<Scalar = f64>> Lengths<S> for Clock {
         _velocity: impl FnOnce() -> Vector<S>,
         ((), is_ahead): (&(), bool),
     ) -> f64 {
-        let round = self.lengths.len() as u64;
-        let step = match (is_ahead, motion.steps) {
-            (true, step) => Some(step),
-            (false, 0) => self.is_repeated.then_some(round - 1),
-            (false, step) => Some(step - 1),
-        };
-        let length = step.and_then(|step| self.lengths.get(self.place(step).1));
+        let length = if is_ahead { self.length(motion.steps) } else { self.length_before(motion.steps) };
         length.map_or(f64::NAN, |length| unit * length)
     }
 
     fn after(&self, _: [f64; 2], _: &MotionOf<S>, _: impl FnOnce() -> Vector<S>, (): &()) {}
 
-    #[allow(clippy::cast_precision_loss)] // a number of rounds
     fn time(&self, steps: u64, unit: f64, (): &()) -> f64 {
-        let (rounds, place) = self.place(steps);
-        let [within, round] = [self.times.get(place), self.times.last()].map(|time| time.copied().unwrap_or(f64::NAN));
-        unit * (round * rounds as f64 + within)
+        unit * Self::time(self, steps)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {

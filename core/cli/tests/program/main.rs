@@ -17,5 +17,6 @@ mod reference;
 mod runs;
 mod sessions;
 mod several;
+mod signals;
 mod sums;
 mod wrong_files;

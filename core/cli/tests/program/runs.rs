@@ -144,8 +144,9 @@ fn a_file_may_have_every_effect() {
     let rows = rows(&folder("all"), &TOP.replace("[run]", others));
     assert_eq!(rows.len(), 201);
     let J = NonstandardInertia::from(body().J_d).to_inertia();
-    // Effects are summed in the order of the list, and then added to the body.
-    let effects = gravity()
+    // The body comes first, and the effects follow in the order of the list.
+    let scene = body()
+        + gravity()
         + GravityGradient { GM: 2.0, r: 3.0, J, direction: Vector3::x() }
         + Dipole { moment: Vector3::new(0.0, 0.1, 1.0), field: Vector3::new(0.2, 0.0, 1.0) }
         + Spring { k: 3.0, length: 0.5, at: Vector3::z(), anchor: Vector3::new(1.0, 0.3, 0.5) }
@@ -154,7 +155,7 @@ fn a_file_may_have_every_effect() {
         + Torque { torque: Vector3::new(0.1, 0.2, -0.1) }
         + Thrust { at: Vector3::new(0.3, 0.0, 1.0), thrust: Vector3::new(0.0, 0.2, 0.1) }
         + MagneticDamping { k: 0.1, field: Vector3::new(0.0, 0.5, 1.0), J };
-    same_as(&rows[200], Stepper::new(body() + effects, 10.0 * 1e-3), 0.0);
+    same_as(&rows[200], Stepper::new(scene, 10.0 * 1e-3), 0.0);
 }
 
 /// Each effect of the library has a table of its name in scene files, and each body a value of `kinetic`, as listed in

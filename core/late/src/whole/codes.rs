@@ -21,6 +21,8 @@ pub(super) struct Codes<B: Backend<f64>> {
     pub(super) rotations: usize,
     pub(super) layout: Layout,
     pub(super) code: Programs<Ready<B::Code>>,
+    /// For each number of the parameters, whether the constants of a step, or their bounds, depend on it.
+    pub(super) folds: Vec<bool>,
     /// The operations of an iteration, and of a step besides them.
     operations: [f64; 2],
 }
@@ -50,8 +52,13 @@ impl<B: Backend<f64>> Codes<B> {
         let operations =
             [length([&programs.iterate, &programs.again]) * 0.5, length([&programs.target, &programs.finish])];
         let layout = layout(&sizes, &factors);
+        let mut folds = vec![false; declaration.count()];
+        let inputs = [&programs.constants, &programs.rest].into_iter().flat_map(|program| &program.inputs);
+        for source in inputs.filter(|source| source.array == Array::Parameters) {
+            folds[source.at] = true;
+        }
         let rotations = factors.iter().filter(|factor| factor.form == Form::Rotation).count();
-        Ok(Self { declaration, sizes, factors, rotations, layout, code, operations })
+        Ok(Self { declaration, sizes, factors, rotations, layout, code, folds, operations })
     }
 
     /// The programs of a usual step.

@@ -13,6 +13,8 @@ use crate::code::Backend;
 struct Stage {
     /// The index of the stage's constants.
     constants: usize,
+    /// The length as a fraction of the step.
+    gamma: f64,
     /// The factor of this stage's coordinates in a guess without the previous stage.
     scale: f64,
     /// The factors of this stage's and of the previous one's in the extrapolation.
@@ -115,17 +117,31 @@ impl Stages {
             watch(self.first(), state);
             return Ok(iterations);
         }
+        self.each(numbered, state, room, &mut |stage, next, room| {
+            let constants = &self.constants[self.list[stage].constants];
+            watch(constants, next);
+            let made = numbered.increment(constants, next, room)?;
+            watch(constants, next);
+            Ok(made)
+        })
+    }
+
+    /// One step of a composition, whose increments a function makes from the number of a stage, a state and room.
+    pub(super) fn each<B: Backend<f64>>(
+        &self,
+        numbered: Numbered<'_, B>,
+        state: &mut [f64],
+        room: &mut [f64],
+        make: &mut impl FnMut(usize, &mut [f64], &mut [f64]) -> Result<Increment, StepError>,
+    ) -> Result<u32, StepError> {
         let sizes = &numbered.codes.sizes;
         let (next, room) = room.split_at_mut(state.len());
         let (earlier, room) = room.split_at_mut(sizes.n);
         next.copy_from_slice(state);
         let mut iterations = 0;
-        for stage in &self.list {
+        for (number, stage) in self.list.iter().enumerate() {
             earlier.copy_from_slice(&next[sizes.history()..sizes.history() + sizes.n]);
-            let constants = &self.constants[stage.constants];
-            watch(constants, next);
-            let made = numbered.increment(constants, next, room)?;
-            watch(constants, next);
+            let made = make(number, next, room)?;
             stage.guess(made, earlier, &mut next[sizes.history()..]);
             iterations += made.iterations;
         }
@@ -136,6 +152,16 @@ impl Stages {
         }
         state.copy_from_slice(next);
         Ok(iterations)
+    }
+
+    /// The lengths of the stages as fractions of the step.
+    pub(super) fn shares(&self) -> impl Iterator<Item = f64> {
+        self.is_single().then_some(1.0).into_iter().chain(self.list.iter().map(|stage| stage.gamma))
+    }
+
+    /// Whether it is a single step.
+    pub(super) const fn is_single(&self) -> bool {
+        self.list.is_empty()
     }
 }
 
@@ -149,7 +175,7 @@ impl Stage {
         let ratio = (this + next) / (before + this);
         let ratio = if ratio.abs() <= FARTHEST_EXTRAPOLATION { ratio } else { 0.0 };
         let scale = next / this;
-        Self { constants, scale, factors: [scale * (1.0 + ratio), -ratio * next / before] }
+        Self { constants, gamma: this, scale, factors: [scale * (1.0 + ratio), -ratio * next / before] }
     }
 
     /// Writes the guess of the next stage behind the coordinates of this one in a memory. Near the fold coordinates change

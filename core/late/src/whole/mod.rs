@@ -13,10 +13,12 @@
 //! - Code and texts are shared. What depends on numbers and on `h` are the constants alone, so that a sweep derives once.
 //! - An error leaves a state as it was, and slices of wrong lengths are errors.
 //!
-//! Deliberately not here: splittings, collocation, joints and systems, densities, compensated sums. They are typed, and
-//! behind the same [`Propagator`](liestep::motion::Propagator).
+//! Deliberately not here: joints and systems. They are typed, and behind the same
+//! [`Propagator`](liestep::motion::Propagator). Methods of SO(3) alone are the library's own, by a scene that runs programs.
 //!
 //! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
+//! `methods → {collocation, rotating, density}`, `collocation → stepper`,
+//! `{density → varied → course, pace} → {stepper, lengths}`,
 //! `inputs → tangent → composed` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
 //! {codes, linear}`.
 
@@ -24,18 +26,32 @@ mod abreast;
 mod algebra;
 mod care;
 mod codes;
+mod collocation;
 mod composed;
 mod constants;
+mod course;
+mod density;
 mod diagnosis;
 mod inputs;
 mod iteration;
+mod lengths;
 mod limit;
 mod linear;
+mod methods;
+mod pace;
 mod plant;
+mod rotating;
+mod signal;
 mod step;
 mod stepper;
 mod tangent;
+mod varied;
 
 pub use abreast::BackendInLanes;
+pub use course::Course;
 pub use inputs::Transition;
+pub use methods::{Question, QuestionError, for_accuracy, stepper};
+pub use pace::Paced;
+pub use signal::{Between, Signal, SignalError};
 pub use stepper::{Whole, WholeError};
+pub use varied::Varied;

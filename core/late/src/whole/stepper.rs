@@ -60,7 +60,7 @@ pub struct Whole<B: Backend<f64> = Interpreter> {
     pub(super) codes: Arc<Codes<B>>,
     pub(super) numbers: Arc<[f64]>,
     pub(super) h: f64,
-    method: Method,
+    pub(super) method: Method,
     pub(super) stages: Stages,
 }
 
@@ -83,7 +83,7 @@ pub enum WholeError {
 }
 
 /// A state of another layout.
-const OF_THIS_LAYOUT: StepError = StepError::NonFinite { what: "state of this layout" };
+pub(super) const OF_THIS_LAYOUT: StepError = StepError::NonFinite { what: "state of this layout" };
 
 impl<B: Backend<f64>> Whole<B> {
     /// The stepper of a declaration with the [numbers](Declaration::numbers) of all its parameters and the step `h`, s. Code is
@@ -220,7 +220,7 @@ impl<B: Backend<f64>> Whole<B> {
     }
 
     /// The initial state at this attitude and momentum.
-    fn begin(&self, attitude: &[f64], momentum: &[f64]) -> Box<[f64]> {
+    pub(super) fn begin(&self, attitude: &[f64], momentum: &[f64]) -> Box<[f64]> {
         let sizes = &self.codes.sizes;
         let mut state = vec![0.0; sizes.state()].into_boxed_slice();
         state[..sizes.entries].copy_from_slice(attitude);
@@ -231,7 +231,7 @@ impl<B: Backend<f64>> Whole<B> {
     }
 
     /// Writes the memory of a new start: an estimate of half the coordinates of the first increment.
-    fn forget(&self, state: &mut [f64]) {
+    pub(super) fn forget(&self, state: &mut [f64]) {
         let sizes = &self.codes.sizes;
         let (moving, memory) = state.split_at_mut(sizes.history());
         let limit = self.numbered().limit(&moving[sizes.advected()..]);
@@ -295,7 +295,7 @@ impl<B: Backend<f64>> Whole<B> {
     }
 
     /// The error of the whole step for that of a stage: it names the largest solvable step.
-    fn explained(&self, state: &[f64], error: StepError) -> StepError {
+    pub(super) fn explained(&self, state: &[f64], error: StepError) -> StepError {
         if self.stages.count() == 1 || !matches!(error, StepError::BeyondSolvable { .. }) {
             return error;
         }
@@ -316,11 +316,11 @@ impl<B: Backend<f64>> Whole<B> {
     }
 
     /// The stepper of these numbers and this method by another step.
-    fn of_length(&self, h: f64) -> Result<Self, SetupError> {
+    pub(super) fn of_length(&self, h: f64) -> Result<Self, SetupError> {
         Self::shared(&self.codes, Arc::clone(&self.numbers), h, self.method)
     }
 
-    fn room(&self) -> usize {
+    pub(super) fn room(&self) -> usize {
         self.stages.room(&self.codes)
     }
 
@@ -335,7 +335,7 @@ impl<B: Backend<f64>> Whole<B> {
     }
 }
 
-fn check_length(what: &'static str, numbers: &[f64], expected: usize) -> Result<(), SetupError> {
+pub(super) fn check_length(what: &'static str, numbers: &[f64], expected: usize) -> Result<(), SetupError> {
     let found = numbers.len();
     if found == expected { Ok(()) } else { Err(SetupError::Length { what, found, expected }) }
 }
@@ -469,7 +469,7 @@ impl<B: Backend<f64>> Propagator for Whole<B> {
 }
 
 /// Writes these numbers; NaN where there are none.
-fn write_or_nan(found: Option<Vec<f64>>, places: &mut [f64]) {
+pub(super) fn write_or_nan(found: Option<Vec<f64>>, places: &mut [f64]) {
     let mut found = found.into_iter().flatten();
     places.fill_with(|| found.next().unwrap_or(f64::NAN));
 }

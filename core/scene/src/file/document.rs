@@ -18,6 +18,7 @@ use crate::file::group::Group;
 use crate::file::lagrangian::{Declared, take};
 use crate::file::method::kind;
 use crate::file::mistake::{Mistake, Wrong, place_of};
+use crate::file::over_time::{self, OverTime};
 use crate::file::picture::{Curve, SpherePicture};
 use crate::file::scene::{Origin, Places, SceneFile};
 use crate::file::schedule::{Pace, equal_steps, fraction};
@@ -28,6 +29,7 @@ use crate::file::words::in_files;
 pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<SceneFile, Mistake> {
     let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
     let mut rest = document.clone();
+    let over_time = over_time::take(&mut rest, path).map_err(located)?;
     let mut on = None;
     let lagrangian = take(&mut rest, Role::Lagrangian, &mut on).map_err(located)?;
     let force = take(&mut rest, Role::Force, &mut on).map_err(located)?;
@@ -39,7 +41,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     if file.body.is_none() && lagrangian.is_empty() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
-    (file.lagrangian, file.force) = (lagrangian, force);
+    (file.lagrangian, file.force, file.over_time) = (lagrangian, force, over_time.into());
     add(document, &mut file).map_err(located)?;
     if let Some(start) = document.get_ref().get("start") {
         file.start = Beginning::read(start, &file.group).map_err(located)?;
@@ -59,6 +61,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
         file.run.pace = Pace::Step { step, steps: equal_steps(step, file.run.duration).map_err(wrong)? };
     }
     at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
+    file.over_time.iter().find_map(|one| of_signal(one, &file)).map_or(Ok(()), Err).map_err(located)?;
     if !file.group.is_rotation() && !has(document, "picture", "panels") {
         file.picture = SpherePicture::on_group();
     }
@@ -121,9 +124,7 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), Wrong> {
         let message = "nothing moves by a potential alone: a `lagrangian` has a kinetic energy, or the file a `body`";
         return Err((first, message.to_owned()));
     }
-    if sum.energy.is_none() {
-        file.group = Group::of(sum, file.lagrangian[0].increments.clone()).map_err(|error| of_term(&first, error))?;
-    }
+    file.group = Group::of(sum, file.lagrangian[0].increments.clone()).map_err(|error| of_term(&first, error))?;
     file.sum = Some(sum);
     Ok(())
 }
@@ -218,25 +219,50 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
             return wrong(&[keys.as_slice(), &[key]].concat(), message);
         }
     }
-    if let Some(([effect, ..], _)) = file.turning().next() {
-        let name = effect.replace('_', " ");
+    if let Some(name) = file.changing() {
         if let Pace::Accuracy(_) = file.run.pace {
             let message = format!(
                 "an accuracy chooses a method for what doesn't change with time; {name} does, so give a `step`"
             );
             return wrong(&["run", "accuracy"], message);
         }
-        if !matches!(file.run.method, Scheme::Step) {
-            let message = format!("{name} turns, with which every method is of second order; leave `method` out");
+        if !matches!(file.run.method, Scheme::Step | Scheme::Composition(_)) {
+            let message = format!(
+                "{name} changes with time, which a step or a composition can follow; take one, or leave `method` out"
+            );
             return wrong(&["run", "method"], message);
         }
     }
     None
 }
 
+/// The mistake of a parameter that can't have the values of its signal, or has none during the run.
+fn of_signal(one: &OverTime, file: &SceneFile) -> Option<Wrong> {
+    let mut scratch = file.clone();
+    let (OverTime { table, key, span, .. }, signal) = (one, one.signal()?);
+    let mut values = signal.values().chunks(signal.width());
+    let wrong = |message: String| Some((span.clone(), message));
+    if !values.next().is_some_and(|first| scratch.set_one(one, first)) {
+        return wrong(format!("`{key}` of `{table}` can't change with time"));
+    }
+    if let Some(value) = values.find(|value| !scratch.set_one(one, value)) {
+        return wrong(format!("`{key}` of `{table}` can't be {value:?}"));
+    }
+    let ([first, last], duration) = (signal.ends(), file.run.duration);
+    if first > 0.0 {
+        return wrong(format!(
+            "a run starts at the time 0, and the first of `times` is {first} s: give a value from 0 on"
+        ));
+    }
+    // The rounding of a duration.
+    let is_short = last < duration * (1.0 - 1e-9);
+    is_short.then_some(())?;
+    wrong(format!("the run ends at {duration} s, and by lines there is no value after the last of `times`, {last} s"))
+}
+
 /// Conflicts with a density of steps.
 fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
-    let (has_a_pace, turns) = (file.paced().is_some(), file.turning().next().is_some());
+    let (has_a_pace, turns) = (file.paced().is_some(), file.changing().is_some());
     let beside = [
         (!has(document, "run", "step"), "the first `step`: give one in the place of `accuracy` and `steps_per_orbit`"),
         (has(document, "run", "method"), "the scene's own step: leave `method` out"),
@@ -253,6 +279,10 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     let method = &file.run.method;
     if file.paced().is_some() {
+        if let Some(one) = file.over_time.first() {
+            let message = "a pace is that of a Lagrangian that doesn't change with time: leave one of both out";
+            return Some((one.span.clone(), message.to_owned()));
+        }
         let beside = file.effects().next().map(|(effect, _)| effect.key);
         let several = (file.lagrangian.len() > 1).then_some("lagrangian");
         if let Some(key) = beside.or(several).or((!file.force.is_empty()).then_some("force")) {

@@ -83,6 +83,10 @@ pub(crate) fn read(
     if file.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
     }
+    if let Some(one) = file.over_time.first() {
+        let message = "the members of an ensemble have no parameters over time: leave them out, or `ensemble`";
+        return Err(located((one.span.clone(), message.to_owned())));
+    }
     let has_a_pace = file.paced().is_some();
     if has_a_pace || file.run.density.is_some() {
         let keys = if has_a_pace { ["lagrangian", "pace"] } else { ["run", "density"] };

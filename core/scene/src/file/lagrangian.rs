@@ -2,12 +2,9 @@
 
 use std::ops::Range;
 
-use liestep::SO3;
-use liestep::groups::Given;
-use liestep::mechanics::WithKinetic;
 use liestep::motion::Propagator as _;
 use liestep_derivation::Role;
-use liestep_late::{Declaration, Late, LateError, Whole};
+use liestep_late::{Declaration, LateError, Whole};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
@@ -25,9 +22,6 @@ pub(crate) type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
 pub(crate) type Backend = liestep_late::Interpreter;
 
-/// The energy of a motion with a pace, and up to three advected vectors.
-type SeenWithEnergy = (Given<f64>, Vector3<f64>, Vector3<f64>, Vector3<f64>);
-
 /// A Lagrangian or a force, with the numbers of its parameters.
 #[derive(Clone)]
 pub(crate) struct Declared {
@@ -41,11 +35,6 @@ pub(crate) struct Declared {
 }
 
 impl Declared {
-    /// The effect with a pace, which advects its energy, too.
-    pub(crate) fn paced(&self) -> Result<Late<SO3, SeenWithEnergy, WithKinetic, Backend>, LateError> {
-        Late::of(self.declaration)?.with_all(&self.numbers)
-    }
-
     /// The inertia of a body's continuous limit at the identity attitude.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
         let whole =
@@ -233,10 +222,6 @@ impl<'t, 'a> Text<'t, 'a> {
             if self.role == Role::Force { ("force", "Force") } else { ("lagrangian", "Lagrangian") };
         let whole = format!("#[{attribute}(\n{}\n)]\nstruct {name} {{ {} }}", lines.join("\n"), fields.join(", "));
         let declaration = Declaration::parse(&whole).map_err(|error| self.mistake(error))?;
-        if self.has_a_pace && Late::<SO3, SeenWithEnergy, WithKinetic, Backend>::of(declaration).is_err() {
-            let at = self.table.get("pace").map_or_else(|| self.span.clone(), Spanned::span);
-            return Err((at, "a pace is that of a motion on `SO3` with three advected vectors at most".to_owned()));
-        }
         let numbers = self.parameters.into_iter().flat_map(|one| one.numbers).collect();
         let (increments, has_a_pace, span) = (self.increments, self.has_a_pace, self.span);
         Ok(Declared { declaration, numbers, has_a_pace, increments, span })

@@ -15,6 +15,7 @@ pub(crate) mod lagrangian;
 pub(crate) mod method;
 pub(crate) mod mistake;
 pub(crate) mod orbit;
+pub(crate) mod over_time;
 pub(crate) mod parameter;
 pub(crate) mod part;
 pub(crate) mod picture;

@@ -1,6 +1,7 @@
 //! The file of a scene with one body.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use liestep::recording;
 use liestep_late::Declaration;
@@ -19,6 +20,7 @@ use crate::file::group::Group;
 use crate::file::lagrangian::{Declared, taken};
 use crate::file::mistake::Wrong;
 use crate::file::orbit::{Orbit, put};
+use crate::file::over_time::OverTime;
 use crate::file::parameter::in_value;
 use crate::file::picture::SpherePicture;
 use crate::file::quantity::{Rate, in_si, round, short};
@@ -104,6 +106,9 @@ effects! { scene_file
     /// The sum of all terms where the file has the kinetic energy itself.
     #[serde(skip)]
     pub(crate) sum: Option<&'static Declaration>,
+    /// The parameters that change with time, but for those along orbits that are the library's.
+    #[serde(skip)]
+    pub(crate) over_time: Arc<[OverTime]>,
     #[serde(skip)]
     pub(crate) columns: Vec<Column>,
     /// The sweep of the file; none in the scenes that a sweep generates.
@@ -237,20 +242,45 @@ impl SceneFile {
         listed.or_else(|| self.force.first().map(|_| "`force`".to_owned()))
     }
 
-    /// The effects that vary along an orbit: the keys that lead to their orbits, and the orbits.
-    pub(crate) fn turning(&self) -> impl Iterator<Item = ([&'static str; 3], &Orbit)> {
-        self.effects()
-            .filter_map(|(effect, table)| table.orbit().map(|(key, orbit)| ([effect.key, key, "orbit"], orbit)))
+    /// The terms that vary along an orbit: the keys that lead to their orbits, and the orbits.
+    pub(crate) fn turning(&self) -> impl Iterator<Item = ([&str; 3], &Orbit)> {
+        let own = self.over_time.iter().filter_map(|one| Some(([&*one.table, &*one.key, "orbit"], one.orbit()?)));
+        let listed = self.effects();
+        let listed =
+            listed.filter_map(|(effect, table)| table.orbit().map(|(key, orbit)| ([effect.key, key, "orbit"], orbit)));
+        listed.chain(own)
+    }
+
+    /// The first term that changes with time, by its table; none in a scene without any.
+    pub(crate) fn changing(&self) -> Option<String> {
+        let turning = self.turning().next().map(|([effect, ..], _)| effect.replace('_', " "));
+        turning.or_else(|| self.over_time.first().map(|one| one.table.replace('_', " ")))
+    }
+
+    /// Sets all parameters over time to their means over a step of this start and length, s; at a time by the length 0.
+    /// Returns whether each has a value.
+    pub(crate) fn set_over(&mut self, span: [f64; 2]) -> bool {
+        let all = Arc::clone(&self.over_time);
+        all.iter().all(|one| self.set_one(one, &one.numbers(span)))
+    }
+
+    /// Sets a parameter over time to these numbers; returns whether it can have them.
+    pub(crate) fn set_one(&mut self, one: &OverTime, numbers: &[f64]) -> bool {
+        let own = match one.table.as_str() {
+            "lagrangian" => &mut self.lagrangian,
+            "force" => &mut self.force,
+            table => {
+                return numbers.iter().enumerate().all(|(at, &number)| self.put([table, &one.key], at, number, ""));
+            }
+        };
+        let Some(own) = own.get_mut(one.number) else { return false };
+        numbers.iter().all(|number| number.is_finite())
+            && own.declaration.set(&mut own.numbers, &one.key, numbers).is_ok()
     }
 
     /// The kinetic term of the library's body.
     pub(crate) fn kinetic(&self) -> Kinetic {
         self.body.map(|body| body.kinetic).unwrap_or_default()
-    }
-
-    /// Whether it has a body of the library with a compiled step, that of (3.13).
-    pub(crate) fn has_compiled_body(&self) -> bool {
-        self.body.is_some_and(|body| body.kinetic == Kinetic::Rigid)
     }
 
     /// The inertia at the identity attitude; none for a Lagrangian that isn't of a body.

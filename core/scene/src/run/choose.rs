@@ -1,16 +1,13 @@
 //! The choice of a scene's types and method, made once per run.
 
-use std::rc::Rc;
+use std::cell::RefCell;
 
-use liestep::accuracy::{Accuracy, Candidate, Choice, choose, displacement, of_any_group};
-use liestep::effects::{CayleyBody, Dipole, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
-use liestep::groups::Advected;
-use liestep::mechanics::{Effect, Inertia, KineticPart, OnlyKicks, Term as _, WithKinetic, WithoutKinetic};
-use liestep::methods::SplittingScheme;
+use liestep::accuracy::{Accuracy, Choice};
+use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
+use liestep::mechanics::{Effect, Inertia};
 use liestep::motion::{AnyStepper, Integrator as _};
-use liestep::with::{Method, Scheme, densities};
-use liestep::{SO3, SetupError, Stepper};
-use liestep_late::{Declaration, Late, LateError, Slots, WholeError};
+use liestep::with::{Method, Scheme};
+use liestep_late::{Course, Declaration, LateError, Question, QuestionError, WholeError, for_accuracy};
 use nalgebra::Vector3;
 
 use crate::file::body::{Distribution, Kinetic};
@@ -21,15 +18,6 @@ use crate::file::words::in_files;
 use crate::run::course::{MemberStart, course, sample, watches};
 use crate::run::make::{Listeners, Run, Stop, make};
 
-/// The advected vectors of all terms of a scene in one tuple; unused ones are zero.
-type Seen = (V, V, V, V, V, V);
-type V = Vector3<f64>;
-/// A program that sums several terms of a scene.
-type Program<K, W = Seen> = Late<SO3, W, K, Backend>;
-/// The program of a file's effects and its force.
-type Rest<W = Seen> = Program<WithoutKinetic, W>;
-/// The program of all terms of a scene.
-type All = Program<WithKinetic, Seen>;
 /// The step of all terms of a scene as data.
 pub type Whole = liestep_late::Whole<Backend>;
 
@@ -67,16 +55,6 @@ fn sum(file: &SceneFile, body: Option<&Moving>) -> Result<Option<&'static Declar
     if terms.is_empty() { Ok(None) } else { Declaration::sum(&terms).map(Some) }
 }
 
-/// The program of the sum.
-fn program<K: KineticPart, W: Advected<SO3> + Slots>(
-    file: &SceneFile,
-    J: &Inertia,
-    body: Option<&Moving>,
-) -> Result<Option<Program<K, W>>, LateError> {
-    let Some(sum) = sum(file, body)? else { return Ok(None) };
-    Late::of(sum)?.with_all(&numbers(file, J, body, 0.0)).map(Some)
-}
-
 /// A scene whose step is data: the sum of all terms, on any group.
 #[derive(Clone)]
 struct Data {
@@ -87,13 +65,13 @@ struct Data {
 impl Data {
     fn of(file: &SceneFile, J: &Inertia) -> Result<Self, Stop> {
         let body = Moving::of(file, *J);
-        let sum = sum(file, body.as_ref()).map_err(late_error)?.ok_or_else(nothing)?;
-        let numbers = sum.described(&numbers(file, J, body.as_ref(), 0.0)).map_err(late_error)?;
+        let sum = sum(file, body.as_ref()).map_err(|error| late_error(&error))?.ok_or_else(nothing)?;
+        let numbers = sum.described(&numbers(file, J, body.as_ref(), 0.0)).map_err(|error| late_error(&error))?;
         Ok(Self { sum, numbers })
     }
 
     fn stepper(&self, method: Method, h: f64) -> Result<AnyStepper, WholeError> {
-        Whole::of(self.sum, &self.numbers, h, method).map(AnyStepper::new)
+        liestep_late::stepper::<Backend>(self.sum, &self.numbers, h, method)
     }
 }
 
@@ -101,7 +79,7 @@ impl Data {
 /// along orbits.
 pub(crate) fn whole(file: &SceneFile) -> Option<Whole> {
     let is_of_one_kind = matches!(file.run.method, Scheme::Step) && !file.has_steps_of_its_own();
-    let J = inertia(file).ok().filter(|_| is_of_one_kind && file.turning().next().is_none())?;
+    let J = inertia(file).ok().filter(|_| is_of_one_kind && file.changing().is_none())?;
     let Pace::Step { step, .. } = file.run.pace else { return None };
     let Data { sum, numbers } = Data::of(file, &J).ok()?;
     Whole::of(sum, &numbers, step, Method::default()).ok()
@@ -122,7 +100,7 @@ pub(crate) fn member(file: &SceneFile, whole: &Whole) -> Result<MemberStart, Sto
 fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
     let own = match (file.body, file.effects().next()) {
         (Some(body), _) => return Ok(body.J),
-        (None, None) => Inertia::from_principal_moments(V::repeat(1.0)),
+        (None, None) => Inertia::from_principal_moments(Vector3::repeat(1.0)),
         (None, Some(_)) => Inertia::new(file.inertia().ok_or_else(nothing)?),
     };
     own.map_err(|error| Stop::Other(error.to_string()))
@@ -137,26 +115,18 @@ fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Moving>, time: f64) -> V
     body.chain(lagrangians).chain(listed).chain(forces).collect()
 }
 
-fn late_error(error: LateError) -> Stop {
-    Stop::Other(match error {
-        LateError::Advected { .. } => {
-            "beside an `orbit`, a `density` or a method with an exact motion a scene advects six vectors at most, and \
-             nothing else"
-                .to_owned()
-        }
-        other => in_files(&other.to_string()),
-    })
+fn late_error(error: &LateError) -> Stop {
+    Stop::Other(in_files(&error.to_string()))
 }
 
 fn whole_error(error: WholeError) -> Stop {
     match error {
-        WholeError::Declaration(error) => late_error(error),
+        WholeError::Declaration(error) => late_error(&error),
         WholeError::Setup(error) => Stop::Setup(error),
     }
 }
 
-/// Simulates a scene. A body of (3.13) has a compiled step, and the rest is one program. The step of all else is data: of
-/// other kinetic terms, of those of the file's own, and where an effect enters the step's equation.
+/// Simulates a scene, whose step is data: one program of all terms.
 pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
     match file.run.pace {
         Pace::Accuracy(tolerance) => ask(file, tolerance, listeners),
@@ -181,116 +151,70 @@ pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
     Ok((stepper, state))
 }
 
-macro_rules! any {
-    ($stepper:expr) => {
-        $stepper.map(Stepper::into_any).map_err(Stop::Setup)
-    };
+/// The numbers of a scene's terms, as functions of time.
+struct SceneCourse {
+    file: RefCell<SceneFile>,
+    J: Inertia,
+    body: Option<Moving>,
+    sum: &'static Declaration,
 }
 
-/// The stepper of a scene with effects along an orbit, whose values are those of each step's middle.
-fn along_orbit(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop> {
-    macro_rules! turning {
-        ($scene:expr, $values:expr) => {
-            match file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok()) {
-                None => any!(Stepper::new($scene, h).map(|stepper| stepper.driven($values))),
-                Some((clock, _)) => {
-                    any!(Stepper::new($scene, 1.0).map(|stepper| stepper.with_clock(clock).driven($values)))
-                }
-            }
-        };
+impl Course for SceneCourse {
+    fn at(&self, time: f64, places: &mut [f64]) {
+        self.over([time, 0.0], places);
     }
-    // A compiled body is no part of the program.
-    let body = Moving::of(file, J).filter(|_| !file.has_compiled_body());
-    let seen = Rc::new(file.clone());
-    macro_rules! scene_and_values {
-        ($rest:ident: $type:ty => $scene:expr, |$advected:ident| $values:expr) => {{
-            let $rest: $type = program(file, &J, body.as_ref()).map_err(late_error)?.ok_or_else(nothing)?;
-            let (scene, whole) = ($scene, $rest);
-            let values = move |time| {
-                let now = whole.clone().with_all(&numbers(&seen, &J, body.as_ref(), time));
-                let $advected = now.as_ref().unwrap_or(&whole).advected();
-                $values
-            };
-            turning!(scene, values)
-        }};
+
+    fn over(&self, [start, length]: [f64; 2], places: &mut [f64]) {
+        let mut file = self.file.borrow_mut();
+        let has_all = file.set_over([start, length]);
+        let now = self.sum.described(&numbers(&file, &self.J, self.body.as_ref(), start + length * 0.5));
+        match now {
+            Ok(now) if has_all => places.copy_from_slice(&now),
+            _ => places.fill(f64::NAN),
+        }
     }
-    if file.has_compiled_body() {
-        let J_d = J.to_nonstandard();
-        scene_and_values!(rest: Rest => RigidBody { J_d } + rest.clone(), |advected| (Default::default(), advected))
-    } else {
-        scene_and_values!(whole: All => whole.clone(), |advected| advected)
-    }
+}
+
+/// The stepper of a scene with terms that change with time, whose values are those of each step's middle.
+fn over_time(file: &SceneFile, J: Inertia, h: f64, method: Method) -> Result<AnyStepper, Stop> {
+    let Data { sum, numbers } = Data::of(file, &J)?;
+    let course = SceneCourse { file: RefCell::new(file.clone()), J, body: Moving::of(file, J), sum };
+    let whole = |h| Whole::of(sum, &numbers, h, method).map_err(whole_error);
+    let clock = file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok());
+    let driven = match clock {
+        None => whole(h)?.driven(course),
+        Some((clock, _)) => whole(1.0)?.with_clock(clock).driven(course),
+    };
+    driven.map(AnyStepper::new).map_err(Stop::Setup)
 }
 
 /// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.
 fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
     let J = inertia(file)?;
     let method = Method::from(file.run.method);
+    let data = || Data::of(file, &J)?.stepper(method, h).map_err(whole_error);
     if !matches!(method.scheme, Scheme::Step | Scheme::Composition(_)) {
-        return with_exact_body(file, &J, h);
+        return data();
     }
     if let Some(Density::Turn(floor)) = file.run.density {
-        let whole: Option<All> = program(file, &J, Moving::of(file, J).as_ref()).map_err(late_error)?;
-        let whole = whole.ok_or_else(nothing)?;
-        let rate = densities::turn(whole.clone(), floor.value);
-        return any!(Stepper::new(whole, h).map(|stepper| stepper.with_density(rate)));
+        let Data { sum, numbers } = Data::of(file, &J)?;
+        let whole = Whole::of(sum, &numbers, h, method).and_then(|whole| whole.turning_evenly(floor.value));
+        return whole.map(AnyStepper::new).map_err(whole_error);
     }
-    if let Some(paced) = file.paced() {
-        return any!(Stepper::new(paced.paced().map_err(late_error)?, h).and_then(Stepper::paced));
+    if file.paced().is_some() {
+        let Data { sum, numbers } = Data::of(file, &J)?;
+        let paced = Whole::of(sum, &numbers, h, method).and_then(|whole| Ok(whole.paced()?));
+        return paced.map(AnyStepper::new).map_err(whole_error);
     }
-    if file.turning().next().is_some() {
-        return along_orbit(file, J, h);
+    if file.changing().is_some() {
+        return over_time(file, J, h, method);
     }
-    let is_compiled = file.has_compiled_body();
-    let data = || Data::of(file, &J)?.stepper(method, h).map_err(whole_error);
-    let Some(body) = file.body.filter(|_| is_compiled) else { return data() };
-    // The smallest type that fits makes the fastest steps.
-    if let (Scheme::Step, Distribution::Principal(J_d)) = (file.run.method, body.mass) {
-        let body = PrincipalBody { J_d };
-        if let Ok(kicks) = program::<OnlyKicks, ()>(file, &J, None) {
-            return kicks.map_or_else(|| any!(Stepper::new(body, h)), |kicks| any!(Stepper::new(body + kicks, h)));
-        }
-        if let Ok(Some(kicks)) = program::<OnlyKicks, V>(file, &J, None) {
-            return any!(Stepper::new(body + kicks, h));
-        }
-        // A force or a potential that enters the step's equation is evaluated with it, unless much is carried.
-        let whole = sum(file, Moving::of(file, J).as_ref()).map_err(late_error)?;
-        return match program::<WithoutKinetic, Seen>(file, &J, None) {
-            Ok(Some(rest)) if whole.is_some_and(|sum| sum.carried.len() > 1) => any!(Stepper::new(body + rest, h)),
-            _ => data(),
-        };
-    }
-    let body = RigidBody { J_d: J.to_nonstandard() };
-    match program::<WithoutKinetic, Seen>(file, &J, None) {
-        Ok(None) => method.on_any_group(body, h).map_err(Stop::Setup),
-        Ok(Some(rest)) => method.on_any_group(body + rest, h).map_err(Stop::Setup),
-        Err(_) => data(),
-    }
+    data()
 }
 
 /// A missing body: impossible in a file that was read.
 fn nothing() -> Stop {
     Stop::Other("there is no body".to_owned())
-}
-
-/// The stepper of a method that uses only the inertia and the potential.
-fn with_exact_body(file: &SceneFile, J: &Inertia, h: f64) -> Result<AnyStepper, Stop> {
-    let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, J)?;
-    let scheme = match file.run.method {
-        // The potential is zero.
-        Scheme::Exact if file.effects().next().is_none() && file.lagrangian.is_empty() => {
-            Scheme::Splitting(SplittingScheme::STRANG)
-        }
-        scheme => scheme,
-    };
-    Method::from(scheme).stepper(scene, h).map_err(Stop::Setup)
-}
-
-/// The program of the effects, or of an effect that is zero: methods for a potential then need one type only.
-fn potential(file: &SceneFile, J: &Inertia) -> Result<Rest, Stop> {
-    let nothing = || Late::parse(Dipole::<f64>::DECLARATION).and_then(|late: Rest| late.with_all(&[0.0; 6]));
-    let rest = program(file, J, None).map_err(late_error)?;
-    rest.map_or_else(nothing, Ok).map_err(late_error)
 }
 
 /// Fewest steps of a run whose number of steps is left open. With fewer, curves would look like polygons.
@@ -309,18 +233,7 @@ fn refined(file: &SceneFile, choice: &Choice) -> Option<(SceneFile, f64)> {
 fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run, Stop> {
     let accuracy = Accuracy { tolerance, horizon: file.run.duration };
     let J = inertia(file)?;
-    let (any, choice) = if file.sum.is_some() {
-        searched(file, &Data::of(file, &J)?, accuracy)?
-    } else {
-        let scene = RigidBody { J_d: J.to_nonstandard() } + potential(file, &J)?;
-        let moving = || V::from_column_slice(&file.start.velocity);
-        // (3.13) has the momentum of Euler's equations.
-        let velocity = file.start.rate().or_else(|| Some(J.as_matrix().try_inverse()? * moving()));
-        let velocity = velocity.ok_or_else(nothing)?;
-        let stepper = Stepper::for_accuracy(scene, accuracy, file.start.rotation(), velocity);
-        let stepper = stepper.map_err(Stop::Accuracy)?;
-        (stepper.any().clone(), stepper.choice().clone())
-    };
+    let (any, choice) = searched(file, &Data::of(file, &J)?, accuracy)?;
     let mut run = if let Some((file, step)) = refined(file, &choice) {
         by(&by_steps(&file, step)?, &file, FEWEST, listeners)?
     } else {
@@ -331,22 +244,14 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
     Ok(run)
 }
 
-/// The stepper that is the cheapest for an accuracy, of a scene whose step is data.
+/// The stepper that is the cheapest for an accuracy.
 fn searched(file: &SceneFile, data: &Data, accuracy: Accuracy) -> Result<(AnyStepper, Choice), Stop> {
     let stepper = data.stepper(Method::default(), accuracy.horizon).map_err(whole_error)?;
     let state = file.start.state(&stepper).map_err(Stop::Start)?;
     let velocity = if file.start.is_by_momentum { stepper.velocity(&state) } else { file.start.velocity.clone() };
-    let candidate = |scheme| {
-        let own = data.clone();
-        let make = move |h| match own.stepper(Method::from(scheme), h) {
-            Ok(stepper) => Ok(stepper),
-            Err(WholeError::Setup(error)) => Err(error),
-            Err(_) => Err(SetupError::Method { cause: "has no step of this declaration; take another" }),
-        };
-        Candidate { scheme, make: Box::new(make) }
-    };
-    let candidates: Vec<_> = of_any_group(data.sum.is_self_adjoint).map(candidate).collect();
-    let attitude = &file.start.attitude;
-    let beside = data.sum.displaced(attitude, &displacement(velocity.len()));
-    choose(&candidates, accuracy, [attitude, &beside], &velocity).map_err(Stop::Accuracy)
+    let question = Question { accuracy, attitude: &file.start.attitude, velocity: &velocity };
+    for_accuracy::<Backend>(data.sum, &data.numbers, question).map_err(|error| match error {
+        QuestionError::Whole(error) => whole_error(error),
+        QuestionError::Accuracy(error) => Stop::Accuracy(error),
+    })
 }

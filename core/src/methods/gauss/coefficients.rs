@@ -27,18 +27,20 @@ pub(super) type Columns<const PAIRS: usize> = [[OfStages<PAIRS>; PAIRS]; 2];
 /// Legendre polynomials; in Legendre's own, `ξ_k` and the norms multiply to `1/2`. The form in `L` is that of
 /// \[AMM17\].
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Coefficients<const PAIRS: usize> {
+pub struct Coefficients<const PAIRS: usize> {
     /// The weight `b_k` of both stages of a pair.
-    pub(super) weights: [f64; PAIRS],
+    pub weights: [f64; PAIRS],
     /// The matrix `1/2 + σ`.
-    pub(super) places: Columns<PAIRS>,
+    pub places: Columns<PAIRS>,
     /// The extrapolation matrix: from the `L` of a step to the values of their interpolating polynomial at the next
     /// step's nodes.
-    pub(super) continuation: Columns<PAIRS>,
+    pub continuation: Columns<PAIRS>,
 }
 
 impl<const PAIRS: usize> Coefficients<PAIRS> {
-    pub(super) fn new() -> Self {
+    /// The coefficients of Gauss' nodes.
+    #[must_use]
+    pub fn gauss() -> Self {
         let stages = 2 * PAIRS;
         let nodes: [f64; PAIRS] = core::array::from_fn(|k| root(stages, k));
         let weights = nodes.map(|x| {
@@ -114,7 +116,7 @@ mod tests {
     /// Butcher's simplifying assumptions `B(2s)` and `C(s)`, which imply order `2s` for a symplectic method. They are
     /// tested for powers of `x = 2c − 1` on `[−1, 1]`, which are well conditioned.
     fn assert_order_conditions<const PAIRS: usize>() {
-        let coefficients = Coefficients::<PAIRS>::new();
+        let coefficients = Coefficients::<PAIRS>::gauss();
         let stages = 2 * PAIRS;
         let nodes: [f64; PAIRS] = core::array::from_fn(|k| super::root(stages, k));
         let (all_nodes, all_weights): (Vec<_>, Vec<_>) = [-1.0, 1.0]
@@ -162,7 +164,7 @@ mod tests {
     /// A polynomial of degree three is determined by four stages, so it is continued exactly.
     #[test]
     fn stages_are_continued_by_their_polynomial() {
-        let coefficients = Coefficients::<2>::new();
+        let coefficients = Coefficients::<2>::gauss();
         let nodes: [f64; 2] = core::array::from_fn(|k| super::root(4, k));
         let cubic = |x: f64| 1.0 + x * (0.5 - x * (2.0 + x));
         let values = |shift: f64| {

@@ -158,7 +158,7 @@ impl<L: ContinuousLagrangian<Scalar = f64>, const PAIRS: usize, const N: usize> 
             return Err(SetupError::InvalidStep { step: h });
         }
         check_inertia::<L::Group>(&lagrangian.velocity_hessian(&Vector::<L>::zero(), &spatial))?;
-        Ok(Self { lagrangian, spatial, h, coefficients: Coefficients::new() })
+        Ok(Self { lagrangian, spatial, h, coefficients: Coefficients::gauss() })
     }
 }
 

@@ -9,10 +9,11 @@ mod settling;
 mod stages;
 mod state;
 
+pub use coefficients::Coefficients;
 pub use cotangent::{CotangentCarry, CotangentGauss};
+pub use settling::{Changes, Next};
 pub use state::CollocationMemory;
 
-use coefficients::Coefficients;
 use lift::{Lift, PhasePoint, length_squared};
 use stages::{Stages, WeightedRates};
 
@@ -125,7 +126,7 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
     fn new(scene: &S, h: f64) -> Result<Self, SetupError> {
         constant_inertia(scene)?;
         let lift = Lift::new(scene, torque(scene)?);
-        let coefficients = Coefficients::new();
+        let coefficients = Coefficients::gauss();
         let weights = [coefficients.weights.map(|weight| h * weight); 2];
         Ok(Self { h, lift, coefficients, weights })
     }

@@ -2,7 +2,7 @@
 
 /// The decision after an iteration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Next {
+pub enum Next {
     /// The iteration goes on: the unknowns aren't known to rounding yet.
     Further,
     /// One more iteration follows, whose change is rounding.
@@ -13,7 +13,7 @@ pub(super) enum Next {
 
 /// The squared relative changes of the last two iterations; NaN before there are any.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Changes {
+pub struct Changes {
     before: f64,
     earlier: f64,
 }
@@ -25,9 +25,13 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 pub(super) const MOST_ITERATIONS: u32 = 60;
 
 impl Changes {
+    /// The most iterations of a step.
+    pub const MOST: u32 = MOST_ITERATIONS;
+
     /// Near an equilibrium, attitude and momentum change alternately if some unknowns are known much better than
     /// others, so three changes are needed for an estimate of the rate of convergence.
-    pub(super) const fn none() -> Self {
+    #[must_use]
+    pub const fn none() -> Self {
         Self { before: f64::NAN, earlier: f64::NAN }
     }
 
@@ -38,7 +42,7 @@ impl Changes {
     /// than the terms of the torque, whose rounding then is a large part of the momentum. There the change counts as
     /// rounding if the attitude's change does.
     #[inline(always)]
-    pub(super) fn judge(&mut self, change: f64, of_attitude: f64) -> Next {
+    pub fn judge(&mut self, change: f64, of_attitude: f64) -> Next {
         let Self { before, earlier } = *self;
         (self.before, self.earlier) = (change, before);
         let (rounding, epsilon) = (ROUNDING * ROUNDING, f64::EPSILON * f64::EPSILON);

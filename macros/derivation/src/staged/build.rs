@@ -2,7 +2,7 @@
 
 use super::sources::{Sources, carried, parameter_kind};
 use super::{Array, Factor, Operation, Parameter, Program, Source, StagedDeclaration, Stages};
-use crate::declared::Declaration;
+use crate::declared::{Declaration, Role};
 use crate::emit;
 use crate::expand::Steps;
 use crate::judged::{Choice, Equations};
@@ -37,6 +37,7 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
         energy: declaration.energy,
         derivation: emit::text(declaration, chosen, equations.as_ref(), findings),
         has_kinetic: derived.limit.has_kinetic,
+        has_force: declaration.role == Role::Force,
         parts: [&derived.unknown, &derived.kick_before, &derived.kick_after].map(|part| !part.is_zero()),
         denominators: kernel.denominators,
         has_constant_inertia: !derived.inertia_varies(),

@@ -312,6 +312,8 @@ pub struct StagedDeclaration {
     pub derivation: String,
     /// Whether there is a kinetic part.
     pub has_kinetic: bool,
+    /// Whether there is a force, of which no Lagrangian is the limit.
+    pub has_force: bool,
     /// Whether the unknown part, the kick before the solve and the kick after it are nonzero.
     pub parts: [bool; 3],
     /// The power of `1 + |y|²` that the Newton system is multiplied by.

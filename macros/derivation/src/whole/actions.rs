@@ -40,15 +40,14 @@ pub(super) fn change(words: &mut Words, factors: &[MatrixFactor], action: Action
     }
 }
 
-/// The value at the attitudes `g` of all factors for the value `w` in space.
+/// The value at the attitudes `g` of all factors for the value `w` in space; `inverse` has the inverse of a factor's.
 pub(super) fn at_attitude(
     words: &mut Words,
-    factors: &[MatrixFactor],
     action: Action,
     w: &Matrix,
     g: &[Matrix],
+    inverse: &dyn Fn(&mut Words, usize) -> Matrix,
 ) -> Matrix {
-    let inverse = |words: &mut Words, k: usize| factors[k].inverse(words, &g[k]);
     match action {
         Action::Given => w.clone(),
         Action::Covector(k) => g[k].transpose().times(words, w),

@@ -102,7 +102,7 @@ impl MatrixFactor {
     }
 
     /// `tr(E_kᵀ M)`.
-    fn pairings(&self, words: &mut Words, matrix: &Matrix) -> Vec<Value> {
+    pub(super) fn pairings(&self, words: &mut Words, matrix: &Matrix) -> Vec<Value> {
         let mut paired = |e: &Vec<f64>| {
             let entries = e.iter().zip(&matrix.entries).filter(|(entry, _)| **entry != 0.0);
             entries.fold(Value::ZERO, |sum, (&entry, &value)| {
@@ -114,7 +114,7 @@ impl MatrixFactor {
     }
 
     /// A covector as a matrix, whose pairing with `E_k` is `μ_k`.
-    fn dual_hat(&self, words: &mut Words, mu: &[Value]) -> Matrix {
+    pub(super) fn dual_hat(&self, words: &mut Words, mu: &[Value]) -> Matrix {
         if self.basis.is_orthogonal {
             let scaled = self.by_lengths(words, mu);
             return self.hat(words, &scaled);

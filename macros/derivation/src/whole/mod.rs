@@ -10,12 +10,14 @@
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!
-//! The files depend on each other in one direction: `step → {limit, certified, tangent} → writer → {actions, solved} → factor → relations → {basis,
-//! matrix → values}`.
+//! The files depend on each other in one direction: `{step → {limit, certified}, collocation, directions} → tangent → writer →
+//! {actions, solved} → factor → relations → {basis, matrix → values}`.
 
 mod actions;
 mod basis;
 mod certified;
+mod collocation;
+mod directions;
 mod factor;
 mod limit;
 mod matrix;
@@ -30,6 +32,8 @@ use std::fmt;
 
 pub use crate::mathematics::chart::Chart;
 pub use basis::{Basis, Form};
+pub use collocation::Canonical;
+pub use directions::in_directions;
 pub use factor::MatrixFactor;
 pub use step::{Programs, Sizes, WholeStep};
 pub use values::{Value, Words};
@@ -47,6 +51,8 @@ pub enum StepRefusal {
         /// Index of the generator, from zero.
         generator: usize,
     },
+    /// The group isn't one of linear and quadratic relations, which collocation keeps.
+    NotQuadratic,
     /// There is no kinetic part, so that no velocity has a momentum.
     NoKinetic,
     /// The programs of the step don't make one, which is a fault of this library.
@@ -70,6 +76,10 @@ impl fmt::Display for StepRefusal {
                 "the Cayley map leaves the group, and the cube of generator {} isn't a multiple of it: choose generators \
                  `E` with `E³ = c E`",
                 generator + 1
+            ),
+            Self::NotQuadratic => write!(
+                f,
+                "collocation leaves this group, which isn't one of linear and quadratic relations: take a composition"
             ),
             Self::NoKinetic => write!(f, "there is no kinetic part, so no step: add a Lagrangian of the velocity"),
             Self::Wrong { claim } => write!(f, "{claim} in the step as it is written: please report this declaration"),

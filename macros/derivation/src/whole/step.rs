@@ -10,7 +10,7 @@ use super::solved::Factorisation;
 use super::values::{Value, Words};
 use super::writer::Writer;
 use super::{MOST_OPERATIONS, StepRefusal};
-use crate::staged::{Action, Array, Program, Source, StagedDeclaration};
+use crate::staged::{Array, Program, Source, StagedDeclaration};
 
 /// The sizes of a state's parts, and their places: attitude, momentum, advected parameters, half the coordinates of the last
 /// increment and their difference to those before, a guess of the next, and the number of steps.
@@ -352,24 +352,9 @@ impl Writer<'_> {
 
     fn seen(&self) -> Program {
         let (mut words, g, mut all) = (Words::default(), self.attitudes(), Vec::new());
-        let carried = &self.staged.carried;
-        for (at, one) in carried.iter().enumerate() {
-            let (rows, columns) = one.shape;
-            let w = match (one.field, one.action) {
-                (Some(field), _) => {
-                    let first: usize = self.staged.parameters[..field].iter().map(|p| p.kind.len()).sum();
-                    Matrix::of(rows, columns, |i, j| {
-                        Value::Input(Source::new(Array::Parameters, first + i * columns + j))
-                    })
-                }
-                // The directions of space, one after the other.
-                (None, Action::Covector(_)) => {
-                    let number = carried[..at].iter().filter(|other| *other == one).count() % rows;
-                    Matrix::of(rows, columns, |i, _| Value::one_if(i == number))
-                }
-                (None, _) => Matrix::identity(rows),
-            };
-            all.extend(at_attitude(&mut words, &self.factors, one.action, &w, &g).entries);
+        for (at, one) in self.staged.carried.iter().enumerate() {
+            let inverse = &|words: &mut Words, k: usize| self.factors[k].inverse(words, &g[k]);
+            all.extend(at_attitude(&mut words, one.action, &self.in_space(at), &g, inverse).entries);
         }
         words.program(&all)
     }

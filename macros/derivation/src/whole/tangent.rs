@@ -18,7 +18,7 @@ use super::writer::Writer;
 use crate::staged::{Array, Function, Operation, Program, Source};
 
 /// A value, and its derivative along the direction.
-type Dual = (Value, Value);
+pub(super) type Dual = (Value, Value);
 
 impl Writer<'_> {
     /// The displacement and the change of the momentum after a step, of half, momentum and advected; a displacement before
@@ -95,7 +95,7 @@ impl Writer<'_> {
 }
 
 /// The outputs of a program with their derivatives.
-fn along(words: &mut Words, program: &Program, input: &dyn Fn(Source) -> Dual) -> Vec<Dual> {
+pub(super) fn along(words: &mut Words, program: &Program, input: &dyn Fn(Source) -> Dual) -> Vec<Dual> {
     let literals = program.literals.iter().map(|&literal| (Value::of(literal), Value::ZERO));
     let mut values: Vec<Dual> = program.inputs.iter().map(|&source| input(source)).chain(literals).collect();
     for &operation in &program.operations {

@@ -1,0 +1,133 @@
+//! Parameters over time: exact impulses, own terms along an orbit, the order of compositions, and mistakes.
+
+use std::fs;
+
+use crate::called::{apart, folder, printed, refused, rows};
+
+const PULSE: &str = "{ times = [0, 0.7, 2.2], values = [[0, 0, 0], [0, 0, 2], [0, 0, 0]], between = \"steps\" }";
+
+fn thruster(torque: &str, duration: &str) -> String {
+    format!(
+        "title = \"A torque for a while\"\n[body]\nmoments = [1, 2, 2.5]\n[torque]\ntorque = {torque}\n[start]\n\
+         euler = [0, 0, 0]\nvelocity = [0, 0, 0]\n[run]\nstep = 0.4\nduration = {duration}\n[output]\n\
+         columns = [\"momentum\"]\n"
+    )
+}
+
+/// A torque from .7 s to 2.2 s has its impulse by steps of .4 s, and that of a line has the integral of the line.
+#[test]
+fn a_torque_has_its_impulse() {
+    let folder = folder("a_torque_has_its_impulse");
+    let end = |torque: &str| rows(&folder, &thruster(torque, "4")).pop().unwrap();
+    let [_, x, y, z] = end(PULSE)[..] else { panic!("a row has four numbers") };
+    assert!(x == 0.0 && y == 0.0 && (z - 3.0).abs() < 1e-14, "{z}");
+    // Up to 1.5 N m at 1 s, and down to zero at 3.1 s: 3.1 · 1.5/2.
+    let line = "{ times = [0, 1, 3.1, 5], values = [[0, 0, 0], [0, 0, 1500], [0, 0, 0], [0, 0, 0]], unit = \"mN m\", \
+                between = \"lines\" }";
+    assert!((end(line)[3] - 2.325).abs() < 1e-14, "{:?}", end(line));
+    // Within the pulse: from .7 s to 1.6 s.
+    let middle = &rows(&folder, &thruster(PULSE, "4"))[4];
+    assert!((middle[0] - 1.6).abs() < 1e-14 && (middle[3] - 1.8).abs() < 1e-14, "{middle:?}");
+    fs::write(folder.join("torque.csv"), "when, about z, nothing\n0, 0, 0\n0.7, 2, 0\n\n2.2, 0, 0\n").unwrap();
+    let csv = "{ csv = \"torque.csv\", time = \"when\", columns = [\"nothing\", \"nothing\", \"about z\"], between = \"steps\" }";
+    assert_eq!(end(csv), end(PULSE));
+    printed(&folder, &["check", "scene.toml"]);
+}
+
+const ORBIT: &str = "{ period = \"100 min\", normal = [0, 0, 1], eccentricity = 0.1, phase = \"40 deg\" }";
+
+fn satellite(terms: &str, steps: u32, method: &str) -> String {
+    format!(
+        "title = \"A satellite\"\n[body]\nmoments = [100, 250, 300]\n[start]\neuler = [0.9, 0.2, 0]\n\
+         velocity = [2e-4, 0, 1e-3]\n[run]\nduration = 6000\nstep = {:?}\n{method}\n[output]\n\
+         columns = [\"quaternion\", \"velocity\", \"energy\"]\n{terms}\n",
+        6000.0 / f64::from(steps)
+    )
+}
+
+const GRADIENT: &str = "[gravity_gradient.direction]\norbit = ";
+
+/// A potential of the file's own follows an orbit as the library's does.
+#[test]
+fn own_terms_follow_an_orbit() {
+    let folder = folder("own_terms_follow_an_orbit");
+    let own = format!(
+        "[lagrangian]\nl_d = \"{{ let after = F.transpose() * w; \
+         -0.75 * h * n * n * (w.dot(&(J * w)) + after.dot(&(J * after))) }}\"\nadvected = {{ w = \"dir\" }}\n\
+         n = {:?}\nJ = {{ moments = [100, 250, 300] }}\ndir = {{ orbit = {ORBIT} }}",
+        std::f64::consts::TAU / 6000.0
+    );
+    let listed = format!("{GRADIENT}{ORBIT}");
+    let [one, other] = [&own, &listed].map(|terms| rows(&folder, &satellite(terms, 600, "")));
+    assert!(apart(&one, &other) < 1e-11, "{:e}", apart(&one, &other));
+    let by_clock =
+        |terms: &str| rows(&folder, &satellite(terms, 600, "").replace("step = 10.0", "steps_per_orbit = 300"));
+    assert!(apart(&by_clock(&own), &by_clock(&listed)) < 1e-11);
+}
+
+/// Each stage of a composition has the direction of its own time.
+#[test]
+fn compositions_along_an_orbit_have_their_order() {
+    let folder = folder("compositions_along_an_orbit_have_their_order");
+    let end = |steps: u32, method: &str| {
+        let text = satellite(&format!("{GRADIENT}{ORBIT}"), steps, method);
+        rows(&folder, &text).pop().unwrap()[1..8].to_vec()
+    };
+    let exact = end(800, "method = { composition = \"Kahan-Li 8\" }");
+    for (method, order, steps) in [("", 2.0, [400, 800]), ("method = { composition = \"Suzuki 4\" }", 4.0, [60, 120])] {
+        let error = |steps: u32| {
+            let end = end(steps, method);
+            // The scale of velocities is that of the orbit.
+            let scale = |at: usize| if at < 4 { 1.0 } else { 1e3 };
+            end.iter().zip(&exact).enumerate().map(|(at, (a, b))| ((a - b) * scale(at)).powi(2)).sum::<f64>().sqrt()
+        };
+        let measured = (error(steps[0]) / error(steps[1])).log2();
+        assert!((measured - order).abs() < 0.05, "{method}: {measured}");
+    }
+}
+
+#[test]
+fn mistakes_of_signals_have_their_place() {
+    let folder = folder("mistakes_of_signals_have_their_place");
+    fs::write(folder.join("short.csv"), "t,z\n0,1\n1,one\n").unwrap();
+    fs::write(folder.join("back.csv"), "t,z\n0,1\n2,1\n1,1\n").unwrap();
+    let scalar = "between = \"steps\" }";
+    for (torque, message) in [
+        ("{ times = [0, 2, 1], values = [[0, 0, 0], [0, 0, 1], [0, 0, 2]], between = \"steps\" }", "that of number 3"),
+        ("{ times = [0, 2], values = [[0, 0, 0]], between = \"steps\" }", "2 times have as many `values`, found 1"),
+        ("{ times = [0, 9], values = [[0, 0, 0], [0, 1]], between = \"lines\" }", "vectors of one length"),
+        ("{ times = [0, 9], values = [[0, 0, 0], [0, 0, inf]], between = \"lines\" }", "finite"),
+        ("{ times = [0, 2], values = [[0, 0, 0], [0, 0, 1]], between = \"lines\" }", "the run ends at 4 s"),
+        ("{ times = [1, 5], values = [[0, 0, 0], [0, 0, 1]], between = \"lines\" }", "a run starts at the time 0"),
+        ("{ times = [0], values = [[0, 0, 0]], between = \"curves\" }", "curves"),
+        ("{ times = [0], values = [[0, 0, 0]] }", "between"),
+        ("{ times = [0], between = \"steps\" }", "a signal has `times`"),
+        (&format!("{{ csv = \"none.csv\", columns = [\"z\"], {scalar}"), "`none.csv` beside the scene can't be read"),
+        (&format!("{{ csv = \"short.csv\", columns = [\"z\"], {scalar}"), "line 3 has no number `z`: `one`"),
+        (&format!("{{ csv = \"short.csv\", columns = [\"w\"], {scalar}"), "there is no column `w`, but t, z"),
+        (&format!("{{ csv = \"back.csv\", columns = [\"z\", \"z\", \"z\"], {scalar}"), "that of number 3"),
+        ("{ times = [0], values = [[0, 0, 0]], between = \"steps\", unit = \"furlong\" }", "`furlong` isn't a unit"),
+    ] {
+        let found = refused(&folder, &thruster(torque, "4"));
+        assert!(found.contains(message) && found.contains("top.toml:5:"), "{torque}: {found}");
+    }
+    let scene = thruster("[0, 0, 1]", "4");
+    let mass = "[drag]\nc = { times = [0, 1], values = [1, -1], between = \"steps\" }\n";
+    assert!(refused(&folder, &format!("{scene}{mass}")).contains("`c` of `drag` can't be [-1.0]"));
+    let up = "[gravity]\nm = 1\ng = 9.81\nrho = [0, 0, 1]\n\
+              up = { times = [0], values = [[0, 0, 1]], between = \"steps\" }\n";
+    assert!(refused(&folder, &format!("{scene}{up}")).contains("`up` of `gravity` can't change with time"));
+    let pulse = thruster(PULSE, "4");
+    for (more, message) in [
+        ("[ensemble]\nmembers = 2\n[ensemble.draw]\nbody.moments = [{ from = 1, to = 1.1 }, 2, 2.5]\n", "ensemble"),
+        ("density = { turn = 1 }\n", "density"),
+    ] {
+        let text = if more.starts_with('[') {
+            pulse.clone() + more
+        } else {
+            pulse.replace("[output]", &format!("{more}[output]"))
+        };
+        assert!(refused(&folder, &text).contains(message), "{more}");
+    }
+    assert!(refused(&folder, &pulse.replace("step = 0.4", "accuracy = 1e-3")).contains("accuracy"));
+}
