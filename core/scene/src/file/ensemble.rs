@@ -70,6 +70,12 @@ impl SceneEnsemble {
     }
 }
 
+/// The mistake of a file with parameters over time, which members don't have.
+fn over_time(file: &SceneFile) -> Option<Wrong> {
+    let message = "the members of an ensemble have no parameters over time: leave them out, or `ensemble`";
+    file.over_time.first().map(|one| (one.span.clone(), message.to_owned()))
+}
+
 /// The ensemble of a table; `file` is the scene without draws.
 pub(crate) fn read(
     (path, text): (&Path, &str),
@@ -83,10 +89,7 @@ pub(crate) fn read(
     if file.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
     }
-    if let Some(one) = file.over_time.first() {
-        let message = "the members of an ensemble have no parameters over time: leave them out, or `ensemble`";
-        return Err(located((one.span.clone(), message.to_owned())));
-    }
+    over_time(file).map_or(Ok(()), Err).map_err(located)?;
     let has_a_pace = file.paced().is_some();
     if has_a_pace || file.run.density.is_some() {
         let keys = if has_a_pace { ["lagrangian", "pace"] } else { ["run", "density"] };
