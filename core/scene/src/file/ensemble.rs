@@ -8,7 +8,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 use crate::file::document::scene;
 use crate::file::draws::{Axis, Component, DRAW, SceneEnsemble, Spread, parts};
 use crate::file::event::{Event, Quantity};
-use crate::file::mistake::{Mistake, Wrong, place_of};
+use crate::file::mistake::{Mistake, SpanMessage, place_of};
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Document, set, span};
 
@@ -41,7 +41,7 @@ impl SceneEnsemble {
 
     /// The scene read from tables in which these numbers are written.
     fn written(&self, numbers: &[f64]) -> Result<SceneFile, Mistake> {
-        let located = |(span, message): Wrong| Mistake::at(&self.path, place_of(&self.text, &span), message);
+        let located = |(span, message): SpanMessage| Mistake::at(&self.path, place_of(&self.text, &span), message);
         let mut numbers = numbers.iter().copied();
         let mut text = |part: &Component| part.text(&self.text, &mut numbers);
         let texts: Vec<Vec<String>> =
@@ -77,7 +77,7 @@ pub(crate) fn read(
     table: &Spanned<DeValue<'_>>,
     file: &SceneFile,
 ) -> Result<SceneEnsemble, Mistake> {
-    let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
+    let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut ensemble = parts((path, text), table).map_err(located)?;
     let wrong = |keys: &[&str], message: String| Err(located((span(document, keys), message)));
     if file.asks_for_accuracy() {

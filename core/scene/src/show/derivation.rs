@@ -6,10 +6,10 @@ use liestep_late::{Declaration, LateError};
 
 use crate::file::body::{Distribution, Kinetic};
 use crate::file::effects::EFFECTS;
-use crate::file::lagrangian::Declared;
+use crate::file::lagrangian::DeclaredTerm;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
-use crate::run::bodies::{Coil, Cord, Heavy};
+use crate::run::bodies::{Coil, Cord, HeavyBody};
 
 /// A term's derivation, and the text of its declaration.
 type Derivation = (&'static str, &'static str);
@@ -97,7 +97,7 @@ impl SceneFile {
         form.of(Declaration::sum(&listed.chain(own).collect::<Result<Vec<_>, _>>()?)?)
     }
 
-    fn own(&self) -> impl Iterator<Item = &Declared> {
+    fn own(&self) -> impl Iterator<Item = &DeclaredTerm> {
         self.lagrangian.iter().chain(&self.force)
     }
 
@@ -130,6 +130,6 @@ impl System {
         let cords = if has(false) { Cord::DERIVATION } else { "" };
         let joints = if self.joints.is_empty() { "" } else { BALLS };
         let pins = if self.has_pins() { PINS } else { "" };
-        format!("{}{gravity}{springs}{cords}{joints}{pins}", Heavy::DERIVATION)
+        format!("{}{gravity}{springs}{cords}{joints}{pins}", HeavyBody::DERIVATION)
     }
 }

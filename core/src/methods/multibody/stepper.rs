@@ -11,7 +11,7 @@ roots!();
 use super::constraint::Place;
 use super::couplings::{Coupling, couplings};
 use super::equations::gap;
-use super::graph::{Joined, Tree};
+use super::graph::{Joint, Tree};
 use super::state::{Offsets, body_at, layout};
 use super::system::{Multibody, ends};
 use super::terms::{BodyTerm, space};
@@ -127,7 +127,7 @@ impl MultibodyStepper {
         self.system.bodies
     }
 
-    pub(super) fn joints(&self) -> &[Joined] {
+    pub(super) fn joints(&self) -> &[Joint] {
         &self.system.joints
     }
 
