@@ -22,29 +22,29 @@ use crate::run::course::{MemberStart, course, sample, watches};
 use crate::run::make::{Listeners, Run, Stop, make};
 
 /// The advected vectors of all terms of a scene in one tuple; unused ones are zero.
-type Seen = (V, V, V, V, V, V);
+type AdvectedVectors = (V, V, V, V, V, V);
 type V = Vector3<f64>;
 /// A program that sums several terms of a scene.
-type Program<K, W = Seen> = Late<SO3, W, K, Backend>;
+type Program<K, W = AdvectedVectors> = Late<SO3, W, K, Backend>;
 /// The program of a file's effects and its force.
-type Rest<W = Seen> = Program<WithoutKinetic, W>;
+type Rest<W = AdvectedVectors> = Program<WithoutKinetic, W>;
 /// The program of all terms of a scene.
-type All = Program<WithKinetic, Seen>;
+type All = Program<WithKinetic, AdvectedVectors>;
 /// The step of all terms of a scene as data.
 pub type Whole = liestep_late::Whole<Backend>;
 
 /// A library body by its text, with its parameters.
 #[derive(Clone)]
-struct Moving {
+struct LibraryBody {
     text: &'static str,
     numbers: Vec<f64>,
 }
 
-impl Moving {
+impl LibraryBody {
     /// The body of a file; none with a kinetic energy of the file's own.
     fn of(file: &SceneFile, J: Inertia) -> Option<Self> {
-        fn body<E: Effect<Scalar = f64>>(body: &E) -> Moving {
-            Moving { text: E::DECLARATION, numbers: liestep_late::numbers(body) }
+        fn body<E: Effect<Scalar = f64>>(body: &E) -> LibraryBody {
+            LibraryBody { text: E::DECLARATION, numbers: liestep_late::numbers(body) }
         }
         let given = file.body?;
         Some(match (given.kinetic, given.mass) {
@@ -59,7 +59,7 @@ impl Moving {
 }
 
 /// The sum of this body, if any, and of the file's Lagrangians, effects and forces, which is derived once per process.
-fn sum(file: &SceneFile, body: Option<&Moving>) -> Result<Option<&'static Declaration>, LateError> {
+fn sum(file: &SceneFile, body: Option<&LibraryBody>) -> Result<Option<&'static Declaration>, LateError> {
     let body = body.map(|body| Declaration::parse(body.text)).into_iter();
     let [lagrangians, forces] = [&file.lagrangian, &file.force].map(|own| own.iter().map(|own| Ok(own.declaration)));
     let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
@@ -71,7 +71,7 @@ fn sum(file: &SceneFile, body: Option<&Moving>) -> Result<Option<&'static Declar
 fn program<K: KineticPart, W: Advected<SO3> + Slots>(
     file: &SceneFile,
     J: &Inertia,
-    body: Option<&Moving>,
+    body: Option<&LibraryBody>,
 ) -> Result<Option<Program<K, W>>, LateError> {
     let Some(sum) = sum(file, body)? else { return Ok(None) };
     Late::of(sum)?.with_all(&numbers(file, J, body, 0.0)).map(Some)
@@ -86,7 +86,7 @@ struct Data {
 
 impl Data {
     fn of(file: &SceneFile, J: &Inertia) -> Result<Self, Stop> {
-        let body = Moving::of(file, *J);
+        let body = LibraryBody::of(file, *J);
         let sum = sum(file, body.as_ref()).map_err(late_error)?.ok_or_else(nothing)?;
         let numbers = sum.described(&numbers(file, J, body.as_ref(), 0.0)).map_err(late_error)?;
         Ok(Self { sum, numbers })
@@ -129,7 +129,7 @@ fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
 }
 
 /// The parameters of all terms at a time, in order.
-fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Moving>, time: f64) -> Vec<f64> {
+fn numbers(file: &SceneFile, J: &Inertia, body: Option<&LibraryBody>, time: f64) -> Vec<f64> {
     let [lagrangians, forces] =
         [&file.lagrangian, &file.force].map(|own| own.iter().flat_map(|own| own.numbers.iter().copied()));
     let body = body.iter().flat_map(|body| body.numbers.iter().copied());
@@ -200,7 +200,7 @@ fn along_orbit(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop>
         };
     }
     // A compiled body is no part of the program.
-    let body = Moving::of(file, J).filter(|_| !file.has_compiled_body());
+    let body = LibraryBody::of(file, J).filter(|_| !file.has_compiled_body());
     let seen = Rc::new(file.clone());
     macro_rules! scene_and_values {
         ($rest:ident: $type:ty => $scene:expr, |$advected:ident| $values:expr) => {{
@@ -230,7 +230,7 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
         return with_exact_body(file, &J, h);
     }
     if let Some(Density::Turn(floor)) = file.run.density {
-        let whole: Option<All> = program(file, &J, Moving::of(file, J).as_ref()).map_err(late_error)?;
+        let whole: Option<All> = program(file, &J, LibraryBody::of(file, J).as_ref()).map_err(late_error)?;
         let whole = whole.ok_or_else(nothing)?;
         let rate = densities::turn(whole.clone(), floor.value);
         return any!(Stepper::new(whole, h).map(|stepper| stepper.with_density(rate)));
@@ -254,14 +254,14 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
             return any!(Stepper::new(body + kicks, h));
         }
         // A force or a potential that enters the step's equation is evaluated with it, unless much is carried.
-        let whole = sum(file, Moving::of(file, J).as_ref()).map_err(late_error)?;
-        return match program::<WithoutKinetic, Seen>(file, &J, None) {
+        let whole = sum(file, LibraryBody::of(file, J).as_ref()).map_err(late_error)?;
+        return match program::<WithoutKinetic, AdvectedVectors>(file, &J, None) {
             Ok(Some(rest)) if whole.is_some_and(|sum| sum.carried.len() > 1) => any!(Stepper::new(body + rest, h)),
             _ => data(),
         };
     }
     let body = RigidBody { J_d: J.to_nonstandard() };
-    match program::<WithoutKinetic, Seen>(file, &J, None) {
+    match program::<WithoutKinetic, AdvectedVectors>(file, &J, None) {
         Ok(None) => method.on_any_group(body, h).map_err(Stop::Setup),
         Ok(Some(rest)) => method.on_any_group(body + rest, h).map_err(Stop::Setup),
         Err(_) => data(),
