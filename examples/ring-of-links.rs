@@ -8,7 +8,7 @@ use std::error::Error;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use liestep::groups::R3;
-use liestep::methods::{BallJoint, Multibody};
+use liestep::methods::{Joint, Multibody};
 use liestep::{NonstandardInertia, SO3};
 use nalgebra::{Vector3, Vector6};
 use rods::FallingBody;
@@ -32,9 +32,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     for _ in 0..N {
         ring.body(rod()?);
     }
-    ring.join(BallJoint { above: Vector3::zeros(), below: left }, None, 0);
+    ring.join(Joint::ball([Vector3::zeros(), left]), None, 0);
     for above in 0..N {
-        ring.join(BallJoint { above: right, below: left }, Some(above), (above + 1) % N);
+        ring.join(Joint::ball([right, left]), Some(above), (above + 1) % N);
     }
     let stepper = ring.stepper(0.002)?;
     #[allow(clippy::cast_precision_loss)] // a small count

@@ -120,7 +120,7 @@ pub enum SetupError {
     /// A joint is redundant along at least one direction, at least where the motion starts: other joints, or its own
     /// functions, constrain the same motion, and its force isn't determined.
     #[error(
-        "the others, or its own functions, do a part of what the joint {joint} (from zero) is to do (pivot {pivot:e}), at least where the motion starts; take one with fewer functions, or start elsewhere"
+        "the others, or its own functions, do a part of what the joint {joint} (from zero) is to do (pivot {pivot:e}), at least where the motion starts; take the system that `Multibody::independent` makes, or one with fewer functions, or start elsewhere"
     )]
     RedundantJoint {
         /// The joint, from zero.

@@ -6,7 +6,7 @@ use declarations::{Alike, FloatingBody};
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, RigidBody, SixthOrderBody};
 use liestep::groups::R3;
 use liestep::mechanics::{Between, Coupling, Each, Effect, Inertia, On, Regular, WithKinetic};
-use liestep::methods::{BallJoint, Multibody, MultibodyStepper, PinJoint};
+use liestep::methods::{Joint, Multibody, MultibodyStepper};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use liestep_late::Late;
@@ -219,7 +219,7 @@ fn conserved(stepper: &MultibodyStepper, state: &[f64]) -> Vec<f64> {
 fn hub_and_rod(make: impl Fn(&mut Multibody)) -> ([Body; 2], [f64; 2]) {
     let mut system = Multibody::new();
     make(&mut system);
-    let joint = BallJoint { above: Vector3::new(0.3, 0.0, 0.0), below: Vector3::new(-0.5, 0.0, 0.0) };
+    let joint = Joint::ball([Vector3::new(0.3, 0.0, 0.0), Vector3::new(-0.5, 0.0, 0.0)]);
     system.join(joint, Some(0), 1);
     let stepper = system.stepper(0.005).unwrap();
     let start = [Vector3::zeros(), Vector3::new(0.8, 0.0, 0.0)].map(|place| (SO3::identity(), R3::from(place)));
@@ -279,7 +279,7 @@ fn a_fast_wheel_on_a_pin_turns_by_geodesics() {
     let hub =
         FloatingBody { m: 2.0, J_d: NonstandardInertia::from_principal_moments(Vector3::new(1.1, 0.9, 0.5)).unwrap() };
     let axis = Vector3::z();
-    let pin = PinJoint { above: Vector3::x(), below: Vector3::zeros(), axis_above: axis, axis_below: axis };
+    let pin = Joint::pin([Vector3::x(), Vector3::zeros()], [axis; 2]);
     let mut system = Multibody::new();
     system.body(hub);
     system.body(Geodesic { m: 1.0, J });

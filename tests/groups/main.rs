@@ -7,4 +7,5 @@ mod points;
 mod products;
 mod retraction_laws;
 mod so3_laws;
+mod special_linear;
 mod user_group;

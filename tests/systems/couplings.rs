@@ -8,7 +8,7 @@ use liestep::effects::{Drag, RigidBody};
 use liestep::groups::{Advected as _, LieGroup as _, R3};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Coupling, DiscreteLagrangian as _, Each, Force as _, Term as _};
-use liestep::methods::{BallJoint, Multibody, MultibodyStepper, PinJoint};
+use liestep::methods::{Joint, Multibody, MultibodyStepper};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, force, lagrangian};
 use nalgebra::{Matrix3, Vector3, Vector6};
@@ -102,7 +102,7 @@ fn tanks(h: f64, friction: [f64; 2]) -> (MultibodyStepper, Box<[f64]>) {
     let (pivots, arm) = ([Vector3::new(0.5, 0.1, 0.0), Vector3::new(-0.4, 0.0, 0.2)], Vector3::z() * 0.3);
     for (pivot, c) in pivots.into_iter().zip(friction) {
         let bob = system.body(FloatingBody { m: 1.0, J_d: inertia([0.01, 0.012, 0.008]) });
-        system.join(BallJoint { above: pivot, below: arm }, Some(0), bob);
+        system.join(Joint::ball([pivot, arm]), Some(0), bob);
         system.between([Some(0), Some(bob)], Friction { c });
     }
     let stepper = system.stepper(h).unwrap();
@@ -232,7 +232,7 @@ fn a_furuta_pendulum_with_friction() {
     let falling = |m, J| FallingBody { m, J_d: inertia(J), g: 9.81, up };
     let arm = system.body(falling(0.2, [0.0002, 0.0016, 0.0016]));
     let rod = system.body(falling(0.1, [0.0014, 0.0014, 0.0001]));
-    let pin = |above, below, axis| PinJoint { above, below, axis_above: axis, axis_below: axis };
+    let pin = |above, below, axis| Joint::pin([above, below], [axis; 2]);
     system.join(pin(Vector3::zeros(), -half, up), None, arm);
     system.join(pin(half, -down, Vector3::x()), Some(arm), rod);
     system.between([None, Some(arm)], Friction { c: 0.1 });
@@ -260,7 +260,7 @@ fn a_furuta_pendulum_with_friction() {
 fn a_spring_in_a_joint_swings_as_a_cosine() {
     let mut system = Multibody::new();
     let body = system.body(FloatingBody { m: 2.0, J_d: inertia([1.0; 3]) });
-    let joint = BallJoint { above: Vector3::zeros(), below: Vector3::zeros() };
+    let joint = Joint::ball([Vector3::zeros(), Vector3::zeros()]);
     system.join(joint, None, body);
     system.between([None, Some(body)], Torsion { k: 1.0 });
     let stepper = system.stepper(1e-3).unwrap();
@@ -291,7 +291,7 @@ fn friction_of_any_strength_takes_energy() {
                 system.body(FallingBody { m: 1.0, J_d: inertia([0.02, MOMENT, MOMENT]), g: 9.81, up: Vector3::z() });
             let before = k.checked_sub(1);
             let above = before.map_or(Vector3::zeros(), |_| half);
-            system.join(BallJoint { above, below: -half }, before, body);
+            system.join(Joint::ball([above, -half]), before, body);
             system.between([before, Some(body)], Friction { c: x * MOMENT / h });
         }
         let stepper = system.stepper(h).unwrap();
@@ -373,7 +373,7 @@ fn a_term_across_joints_doesnt_depend_on_the_order_of_bodies() {
         for k in 0..N {
             let before = k.checked_sub(1);
             let above = before.map_or(Vector3::zeros(), |_| half);
-            system.join(BallJoint { above, below: -half }, before.map(|k| numbers[k]), numbers[k]);
+            system.join(Joint::ball([above, -half]), before.map(|k| numbers[k]), numbers[k]);
         }
         let [first, .., last] = numbers;
         system.between([Some(first), Some(last)], Friction { c: 0.3 });
@@ -443,7 +443,7 @@ fn bodies_whose_masses_differ_by_a_hundred_millions() {
     let off = |h: f64, steps: u64| {
         let mut system = Multibody::new();
         let up = Vector3::z();
-        let ball = |above: f64, below: f64| BallJoint { above: up * above, below: up * below };
+        let ball = |above: f64, below: f64| Joint::ball([up * above, up * below]);
         let body = |m, J: f64| FallingBody { m, J_d: inertia([J; 3]), g: 9.81, up };
         let rod = system.body(body(1e-5, 8.333_333e-7));
         let bob = system.body(body(1000.0, 16.0));

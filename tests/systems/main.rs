@@ -4,6 +4,7 @@
 
 mod couplings;
 mod energy;
+mod joints;
 mod limit;
 mod structure;
 mod symmetry;

@@ -83,6 +83,7 @@ pub(crate) fn command() -> Command {
                 .arg(flag("c", "A step as C99 without dependencies"))
                 .group(ArgGroup::new("form").args(["latex", "rust", "c"]).requires("NAME")),
         )
+        .subcommand(import())
         .subcommand(
             Command::new("replay")
                 .about("Makes pages that play recorded runs, to be opened in a browser")
@@ -94,6 +95,14 @@ pub(crate) fn command() -> Command {
                 .about("Prints what a shell needs to complete these commands")
                 .arg(Arg::new("SHELL").required(true).value_parser(value_parser!(Shell))),
         )
+}
+
+fn import() -> Command {
+    Command::new("import")
+        .about("Writes a scene for each model of a robot, with what has no counterpart as comments")
+        .arg(files("Models of URDF"))
+        .arg(flag("floating", "The root link is a body that floats; without, it is space"))
+        .arg(out())
 }
 
 fn files(help: &'static str) -> Arg {

@@ -23,7 +23,7 @@ use liestep::recording::{Column, Csv, Sink, SinkError};
 use liestep_arrow::ArrowStream;
 use liestep_derivation::suggestion;
 use liestep_plot::output::Output;
-use liestep_scene::{Form, Mistake, Run, Scene, SceneFile, System, visible};
+use liestep_scene::{Form, Import, Mistake, Run, Scene, SceneFile, System, visible};
 
 use failure::Failure;
 use files::{different_files, files, folder, name};
@@ -49,6 +49,7 @@ fn answer(matches: &ArgMatches) -> Result<(), Failure> {
         Some(("ensemble", given)) => ensemble::ensemble(given, false),
         Some(("report", given)) => ensemble::ensemble(given, true),
         Some(("derive", given)) => derive(given),
+        Some(("import", given)) => import(given),
         Some(("replay", given)) => replay(given),
         Some(("completions", given)) => command::complete(given),
         _ => Err(Failure::Command("a command is required; see --help".to_owned())),
@@ -230,6 +231,23 @@ fn derive(given: &ArgMatches) -> Result<(), Failure> {
     let nearest = suggestion(name, names.iter().map(String::as_str));
     let message = format!("'{name}' is neither a scene file (*.toml) nor one of {}{nearest}", names.join(", "));
     Err(Failure::Command(message))
+}
+
+/// Writes scenes of models. Each is read again before it is written, so that it is one.
+fn import(given: &ArgMatches) -> Result<(), Failure> {
+    let paths = different_files(given)?;
+    let floats = given.get_flag("floating");
+    let imports = paths.iter().map(|path| liestep_scene::import(path, floats)).collect::<Result<Vec<_>, _>>()?;
+    let mut output = folder(given)?;
+    for (path, Import { text, remarks }) in paths.iter().zip(&imports) {
+        for remark in remarks {
+            eprintln!("note: {}: {}", visible(&path.display().to_string()), visible(remark));
+        }
+        let written = name(path, "toml");
+        Scene::parse(&written, text)?;
+        output.write(&written, text)?;
+    }
+    print(&output.to_string())
 }
 
 fn replay(given: &ArgMatches) -> Result<(), Failure> {

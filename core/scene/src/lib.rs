@@ -25,6 +25,7 @@
 //! ```
 
 mod file;
+mod import;
 mod run;
 mod show;
 
@@ -35,6 +36,7 @@ pub use file::read::{Scene, parse, read};
 pub use file::sample::{BodySample, Sample};
 pub use file::scene::{SceneFile, Sweep};
 pub use file::system::System;
+pub use import::{Import, import};
 pub use run::choose::Whole;
 pub use run::course::{BodyIntegrator, MemberEvent, MemberStart};
 pub use run::make::{Happening, Run};

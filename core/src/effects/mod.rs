@@ -60,6 +60,8 @@
 //! | [`Thrust`] | of a force that is constant in the body, at a point of it |
 //! | [`Torque`] | constant in the body |
 //!
+//! Springs, friction and motors in [`joints`] are terms between two bodies.
+//!
 //! A torque that is prescribed step by step isn't an effect but an argument of the step:
 //! [`Stepper::step_forced`](crate::motion::Stepper::step_forced).
 
@@ -70,6 +72,7 @@ mod geodesic_body;
 mod gravity;
 mod gravity_gradient;
 mod higher_order_body;
+pub mod joints;
 mod magnetic_damping;
 mod rigid_body;
 mod rotor;

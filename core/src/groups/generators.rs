@@ -11,8 +11,8 @@ use crate::numbers::{Real, real};
 /// `N` is the size of the matrices and `D` the dimension of the group. Implement it for an empty marker type; the group
 /// is then [`MatrixGroup`](crate::groups::MatrixGroup) of that marker, best under an alias.
 ///
-/// The basis must be orthogonal, `tr(E_jᵀ E_k) = 0` for `j ≠ k`, of any lengths, and span a Lie algebra. Both are
-/// checked when the user's crate is compiled. That the elements satisfy the relation is a law to be tested:
+/// The basis must be independent and span a Lie algebra. Both are checked when the user's crate is compiled. That the
+/// elements satisfy the relation is a law to be tested:
 /// [`lie_group_laws`](crate::laws::lie_group_laws).
 ///
 /// # Examples
@@ -41,8 +41,8 @@ use crate::numbers::{Real, real};
 /// assert_eq!(map.matrix(), Matrix2::new(3.0, 2.0, 0.0, 1.0));
 /// ```
 ///
-/// Generators that aren't orthogonal don't compile, nor does a Cayley map that leaves the group. Here `diag(1, 2)³`
-/// isn't a multiple of `diag(1, 2)`:
+/// Generators that depend on each other don't compile, nor do those of a group that the Cayley map leaves if the cube of one
+/// isn't a multiple of it ([`CayleyRetraction`](crate::groups::CayleyRetraction)). Here the cube of `diag(1, 2)` isn't:
 ///
 /// ```compile_fail,E0080
 /// # use liestep::groups::matrix;
@@ -147,42 +147,128 @@ const fn add_product<const N: usize>(c: &[[f64; N]; N], s: f64, a: &[[f64; N]; N
     result
 }
 
-/// The squared lengths `tr(E_kᵀ E_k)` of the basis, which is checked to be orthogonal.
+/// The squared lengths `tr(E_kᵀ E_k)` of the basis.
 pub(super) const fn squared_lengths<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> [f64; D] {
     let (mut lengths, mut i) = ([0.0; D], 0);
     while i < D {
         lengths[i] = pairing(&basis[i], &basis[i]);
         assert!(lengths[i] > 0.0, "a generator is zero");
-        let mut j = 0;
-        while j < i {
-            let product = pairing(&basis[i], &basis[j]);
-            assert!(
-                product * product <= ROUNDING_SQUARED * lengths[i] * lengths[j],
-                "two generators aren't orthogonal: tr(E_jᵀ E_k) ≠ 0"
-            );
-            j += 1;
-        }
         i += 1;
     }
     lengths
 }
 
+/// Whether `tr(E_jᵀ E_k) = 0` for any two of the basis.
+pub(super) const fn is_orthogonal<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> bool {
+    let (lengths, mut place) = (squared_lengths(basis), 0);
+    while place < D * D {
+        let (i, j) = (place / D, place % D);
+        let product = pairing(&basis[i], &basis[j]);
+        if i != j && product * product > ROUNDING_SQUARED * lengths[i] * lengths[j] {
+            return false;
+        }
+        place += 1;
+    }
+    true
+}
+
+/// The dual basis `E^k` in the span of the basis, `tr((E^k)ᵀ E_j) = 1` for `j = k` and else zero.
+pub(super) const fn dual<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> [[[f64; N]; N]; D] {
+    let lengths = squared_lengths(basis);
+    // The inverse of the pairings of the basis by elimination; pivots of a positive definite matrix are on the diagonal.
+    let (mut gram, mut inverse, mut place) = ([[0.0; D]; D], [[0.0; D]; D], 0);
+    while place < D * D {
+        let (i, j) = (place / D, place % D);
+        gram[i][j] = pairing(&basis[i], &basis[j]);
+        inverse[i][j] = if i == j { 1.0 } else { 0.0 };
+        place += 1;
+    }
+    let mut k = 0;
+    while k < D {
+        let pivot = gram[k][k];
+        assert!(pivot > 1e-9 * lengths[k], "a generator is a combination of those before it");
+        let mut j = 0;
+        while j < D {
+            gram[k][j] /= pivot;
+            inverse[k][j] /= pivot;
+            j += 1;
+        }
+        let mut place = 0;
+        while place < D * D {
+            let (i, j) = (place / D, (place + k + 1) % D);
+            // The column of the pivot comes last, as it is the factor of its row.
+            if i != k {
+                let factor = gram[i][k];
+                inverse[i][j] -= factor * inverse[k][j];
+                gram[i][j] -= factor * gram[k][j];
+            }
+            place += 1;
+        }
+        k += 1;
+    }
+    let (mut all, mut place) = ([[[0.0; N]; N]; D], 0);
+    while place < D * D {
+        all[place / D] = add_scaled(&all[place / D], inverse[place / D][place % D], &basis[place % D]);
+        place += 1;
+    }
+    all
+}
+
+/// The sum `C + s A`; what is left of entries that cancel is zero.
+const fn add_scaled<const N: usize>(c: &[[f64; N]; N], s: f64, a: &[[f64; N]; N]) -> [[f64; N]; N] {
+    let (mut result, mut place) = (*c, 0);
+    while place < N * N {
+        let (i, j) = (place / N, place % N);
+        let product = s * a[i][j];
+        result[i][j] += product;
+        if result[i][j].abs() <= 1e-14 * product.abs() {
+            result[i][j] = 0.0;
+        }
+        place += 1;
+    }
+    result
+}
+
 /// The components of `A` in the basis, and whether `A` is in its span, by a residual relative to `scale`.
 const fn components<const N: usize, const D: usize>(
-    basis: &[[[f64; N]; N]; D],
+    [basis, dual]: [&[[[f64; N]; N]; D]; 2],
     a: &[[f64; N]; N],
     scale: f64,
 ) -> ([f64; D], bool) {
-    let lengths = squared_lengths(basis);
-    let (mut result, mut covered, mut k) = ([0.0; D], 0.0, 0);
+    let (mut result, mut rest, mut k) = ([0.0; D], *a, 0);
     while k < D {
-        result[k] = pairing(a, &basis[k]) / lengths[k];
-        covered += result[k] * result[k] * lengths[k];
+        result[k] = pairing(a, &dual[k]);
+        rest = add_scaled(&rest, -result[k], &basis[k]);
         k += 1;
     }
-    // The squared norm of the residual, by Pythagoras.
-    let left = pairing(a, a) - covered;
-    (result, left.abs() <= 1e-12 * scale)
+    (result, pairing(&rest, &rest) <= 1e-12 * scale)
+}
+
+/// The number `c` with `E³ = c E`, of each generator; none if the cube of one isn't a multiple of it.
+pub(crate) const fn cubes<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> Option<[f64; D]> {
+    let (lengths, zero) = (squared_lengths(basis), [[0.0; N]; N]);
+    let (mut all, mut k) = ([0.0; D], 0);
+    while k < D {
+        let square = add_product(&zero, 1.0, &basis[k], &basis[k]);
+        let cube = add_product(&zero, 1.0, &square, &basis[k]);
+        all[k] = pairing(&cube, &basis[k]) / lengths[k];
+        let rest = add_scaled(&cube, -all[k], &basis[k]);
+        if pairing(&rest, &rest) > 1e-12 * lengths[k] * lengths[k] * lengths[k] {
+            return None;
+        }
+        k += 1;
+    }
+    Some(all)
+}
+
+/// The squares `E_k²`.
+pub(crate) const fn squares<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> [[[f64; N]; N]; D] {
+    let (mut all, mut k) = ([[[0.0; N]; N]; D], 0);
+    while k < D {
+        all[k] = add_product(&[[0.0; N]; N], 1.0, &basis[k], &basis[k]);
+        k += 1;
+    }
+    all
 }
 
 /// The structure constants `c[i][j][k]` with `[E_i, E_j] = Σ c[i][j][k] E_k`, after a check that the span is an
@@ -190,14 +276,14 @@ const fn components<const N: usize, const D: usize>(
 pub(super) const fn structure_constants<const N: usize, const D: usize>(
     basis: &[[[f64; N]; N]; D],
 ) -> [[[f64; D]; D]; D] {
-    let lengths = squared_lengths(basis);
+    let (lengths, dual) = (squared_lengths(basis), dual(basis));
     let (mut constants, mut i) = ([[[0.0; D]; D]; D], 0);
     while i < D {
         let mut j = 0;
         while j < D {
             let product = add_product(&[[0.0; N]; N], 1.0, &basis[i], &basis[j]);
             let commutator = add_product(&product, -1.0, &basis[j], &basis[i]);
-            let (bracket, closed) = components(basis, &commutator, lengths[i] * lengths[j]);
+            let (bracket, closed) = components([basis, &dual], &commutator, lengths[i] * lengths[j]);
             assert!(closed, "the generators don't span a Lie algebra: a commutator leaves their span");
             constants[i][j] = bracket;
             j += 1;
@@ -248,12 +334,26 @@ pub(crate) const fn products_vanish<const N: usize, const D: usize>(basis: &[[[f
     true
 }
 
+/// The number of rows down to the last in which a generator has an entry; the rows below are those of the identity in all
+/// elements of the group.
+pub(crate) const fn changed_rows<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> usize {
+    let (mut rows, mut place) = (0, 0);
+    while place < D * N * N {
+        let row = place / N % N;
+        if row >= rows && basis[place / (N * N)][row][place % N] != 0.0 {
+            rows = row + 1;
+        }
+        place += 1;
+    }
+    rows
+}
+
 /// Whether the symmetrised products of any three generators lie in their span.
 ///
 /// If they do, so do all odd powers of `ξ̂`, and then `(d/dt cay(tξ)) cay(tξ)⁻¹ = ξ̂ (I − t²ξ̂²/4)⁻¹`, so that the
 /// Cayley map stays in the group.
 pub(crate) const fn is_closed_under_cayley<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> bool {
-    let lengths = squared_lengths(basis);
+    let (lengths, dual) = (squared_lengths(basis), dual(basis));
     let zero = [[0.0; N]; N];
     let mut i = 0;
     while i < D {
@@ -267,7 +367,7 @@ pub(crate) const fn is_closed_under_cayley<const N: usize, const D: usize>(basis
                 let sum = add_product(&zero, 1.0, &basis[k], &anticommutator);
                 let sum = add_product(&sum, 1.0, &basis[j], &of_ik);
                 let sum = add_product(&sum, 1.0, &basis[i], &of_jk);
-                if !components(basis, &sum, lengths[i] * lengths[j] * lengths[k]).1 {
+                if !components([basis, &dual], &sum, lengths[i] * lengths[j] * lengths[k]).1 {
                     return false;
                 }
                 k += 1;

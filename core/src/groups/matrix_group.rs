@@ -8,16 +8,19 @@ use nalgebra::{RealField, SMatrix, SVector, Vector1};
 use thiserror::Error;
 
 use super::LieGroup;
+use super::affine::{times, times_transpose, transpose_times};
 use super::generators::{
-    Generators, NonZero, dynamic, nonzero_entries, products_vanish, squared_lengths, structure_constants,
+    Generators, NonZero, changed_rows, dual, dynamic, is_orthogonal, nonzero_entries, products_vanish, squared_lengths,
+    structure_constants,
 };
+use super::rigid;
 use crate::numbers::{Lanes, Real, real, reported};
 
 /// An element of the matrix group with the [`Generators`] `K`.
 ///
 /// Tangent space: `ξ̂ = Σ ξ_k E_k`; `ad_ξ η` by the structure constants, which are computed when the user's crate is
-/// compiled. Covector components are `μ_k = ⟨μ, E_k⟩`; as a matrix a covector is `Σ μ_k E_k / tr(E_kᵀ E_k)`, paired by
-/// `tr(AᵀB)`.
+/// compiled. Covector components are `μ_k = ⟨μ, E_k⟩`; as a matrix a covector is `Σ μ_k E^k` with the dual basis, paired by
+/// `tr(AᵀB)`; for an orthogonal basis `E^k = E_k / tr(E_kᵀ E_k)`.
 ///
 /// # Shape and units
 ///
@@ -74,7 +77,12 @@ impl<K: Generators<N, D>, T: RealField + Copy, const N: usize, const D: usize> T
 impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> MatrixGroup<K, T, N, D> {
     const SQUARED_LENGTHS: [f64; D] = squared_lengths(&K::GENERATORS);
     const ENTRIES: [NonZero<N>; D] = nonzero_entries(&K::GENERATORS);
+    /// The nonzero entries of the dual basis; none if the basis is orthogonal.
+    const DUAL: Option<[NonZero<N>; D]> =
+        if is_orthogonal(&K::GENERATORS) { None } else { Some(nonzero_entries(&dual(&K::GENERATORS))) };
     const STRUCTURE: [[[f64; D]; D]; D] = structure_constants(&K::GENERATORS);
+    /// The size of the rotations of a group of rigid motions.
+    pub(super) const ROTATIONS: Option<usize> = rigid::size_of(&K::GENERATORS);
     /// Whether elements are multiplied by adding their differences from `I`.
     const IS_ADDED: bool = products_vanish(&K::GENERATORS);
 
@@ -94,18 +102,39 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> MatrixGroup<K
     /// The pairings `tr(E_kᵀ M)` for all `k`.
     #[inline]
     fn pairings(matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
-        SVector::from_fn(|k, _| {
-            let (entries, count) = &Self::ENTRIES[k];
-            let entries = entries.as_flattened().iter().take(*count);
-            entries.fold(T::zero(), |sum, &(i, j, entry)| sum + matrix[(i, j)] * real(entry))
-        })
+        paired(&Self::ENTRIES, matrix)
     }
 
-    /// The covector as a matrix, `Σ μ_k E_k / tr(E_kᵀ E_k)`.
+    /// The covector as a matrix, `Σ μ_k E^k`: for an orthogonal basis `Σ μ_k E_k / tr(E_kᵀ E_k)`.
     #[inline]
     fn dual_hat(momentum: &SVector<T, D>) -> SMatrix<T, N, N> {
+        if let Some(dual) = const { &Self::DUAL } {
+            return combined(dual, momentum);
+        }
         Self::hat(&SVector::from_fn(|k, _| momentum[k] * real(1.0 / Self::SQUARED_LENGTHS[k])))
     }
+}
+
+/// The pairings `tr(A_kᵀ M)` with matrices by their nonzero entries.
+#[inline]
+fn paired<T: Real, const N: usize, const D: usize>(all: &[NonZero<N>; D], matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
+    SVector::from_fn(|k, _| {
+        let (entries, count) = &all[k];
+        let entries = entries.as_flattened().iter().take(*count);
+        entries.fold(T::zero(), |sum, &(i, j, entry)| sum + matrix[(i, j)] * real(entry))
+    })
+}
+
+/// The combination `Σ x_k A_k` of matrices by their nonzero entries.
+#[hot]
+fn combined<T: Real, const N: usize, const D: usize>(all: &[NonZero<N>; D], x: &SVector<T, D>) -> SMatrix<T, N, N> {
+    let mut sum = SMatrix::zeros();
+    for (k, (entries, count)) in all.iter().enumerate() {
+        for &(i, j, entry) in entries.as_flattened().iter().take(*count) {
+            sum[(i, j)] += x[k] * real(entry);
+        }
+    }
+    sum
 }
 
 /// The values of a function of the matrix in each lane.
@@ -135,6 +164,7 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     type Matrix = SMatrix<T, N, N>;
 
     const DIMENSION: usize = D;
+    const ROWS: usize = changed_rows(&K::GENERATORS);
     const COORDINATES: &'static [&'static str] = K::COORDINATES;
 
     fn identity() -> Self {
@@ -158,17 +188,14 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     }
 
     fn hat(components: &SVector<T, D>) -> SMatrix<T, N, N> {
-        let mut algebra = SMatrix::zeros();
-        for (k, (entries, count)) in Self::ENTRIES.iter().enumerate() {
-            for &(i, j, entry) in entries.as_flattened().iter().take(*count) {
-                algebra[(i, j)] += components[k] * real(entry);
-            }
-        }
-        algebra
+        combined(&Self::ENTRIES, components)
     }
 
     /// The components of the orthogonal projection, for a matrix that isn't in the algebra.
     fn vee(matrix: &SMatrix<T, N, N>) -> SVector<T, D> {
+        if let Some(dual) = const { &Self::DUAL } {
+            return paired(dual, matrix);
+        }
         let pairings = Self::pairings(matrix);
         SVector::from_fn(|k, _| pairings[k] * real(1.0 / Self::SQUARED_LENGTHS[k]))
     }
@@ -214,14 +241,14 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         if const { Self::IS_ADDED } {
             return -increment;
         }
-        -(Self::inverse_of(&(increment + SMatrix::identity())) * increment)
+        -times(&Self::inverse_of(&(increment + SMatrix::identity())), increment, Self::ROWS)
     }
 
     fn change(&self, increment: &SMatrix<T, N, N>) -> SMatrix<T, N, N> {
         if const { Self::IS_ADDED } {
             return *increment;
         }
-        self.0 * increment
+        times(&self.0, increment, Self::ROWS)
     }
 
     /// The components `⟨DᵀM + (M + DᵀM) Eᵀ, E_k⟩` for the covector's matrix `M`, with `F⁻¹ = I + E`, `E = −F⁻¹D`.
@@ -231,8 +258,8 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         }
         let inverse_increment = Self::inverse_increment(increment);
         let covector = Self::dual_hat(momentum);
-        let moved = increment.transpose() * covector;
-        Self::pairings(&(moved + (covector + moved) * inverse_increment.transpose()))
+        let moved = transpose_times(increment, &covector, Self::ROWS);
+        Self::pairings(&(moved + times_transpose(&(covector + moved), &inverse_increment, Self::ROWS)))
     }
 
     /// The components whose generators are skew.

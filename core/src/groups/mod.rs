@@ -27,6 +27,7 @@
 //! the other. `[SO3; N]` is the product of `N` equal groups, for [systems](crate::mechanics::Placement) of many bodies.
 
 mod advected;
+mod affine;
 mod bodies;
 mod exponential;
 mod generators;
@@ -54,7 +55,7 @@ pub(crate) use advected::{homogeneous, seen_of_unit};
 pub use bodies::Pair;
 pub(crate) use exponential::{exponential, logarithm};
 pub use generators::{Generators, matrix};
-pub(crate) use generators::{inverse, is_closed_under_cayley, products_vanish};
+pub(crate) use generators::{cubes, dynamic, inverse, is_closed_under_cayley, products_vanish, squares};
 pub use heisenberg::{Heisenberg, HeisenbergGenerators};
 pub use liestep_macros::matrix_group;
 pub use matrix_group::{MatrixGroup, NotInGroup};
@@ -109,6 +110,10 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
 
     /// Number of equal bodies in an array; otherwise one.
     const BODIES: usize = 1;
+
+    /// The number of rows of a matrix below which all elements are the identity; by default all may differ from it.
+    #[doc(hidden)]
+    const ROWS: usize = usize::MAX;
 
     /// Number of rotations of bodies in an element.
     const ATTITUDES: usize = 0;

@@ -1,24 +1,143 @@
 //! Rotations with columns beside them, `[R, X; 0, I]`: the common parts of SE(2), SE(3) and SE₂(3).
 
-use nalgebra::{RealField, SMatrix};
+use nalgebra::{RealField, SMatrix, SVector};
+
+use crate::numbers::Real;
+
+/// The place `(row, column)` of the entry 1 of a rotation's generator, whose other entry is −1 at `(column, row)`: of the one
+/// rotation of the plane, or of the `ê_k` of SO(3).
+const fn turned(size: usize, k: usize) -> (usize, usize) {
+    if size == 2 { (1, 0) } else { ((k + 2) % 3, (k + 1) % 3) }
+}
+
+/// The number of rotations of space, or of the plane.
+const fn turns(size: usize) -> usize {
+    size * (size - 1) / 2
+}
 
 /// The generators of the rotations of size `K`, then the unit columns beside them.
 pub(super) const fn generators<const K: usize, const N: usize, const D: usize>() -> [[[f64; N]; N]; D] {
+    of_size(K)
+}
+
+const fn of_size<const N: usize, const D: usize>(size: usize) -> [[[f64; N]; N]; D] {
     let mut all = [[[0.0; N]; N]; D];
     let mut next = 0;
-    // The one rotation of the plane, or in space the `ê_k` of SO(3).
-    while next < K * (K - 1) / 2 {
-        let (row, column) = if K == 2 { (1, 0) } else { ((next + 2) % K, (next + 1) % K) };
+    while next < turns(size) {
+        let (row, column) = turned(size, next);
         all[next][row][column] = 1.0;
         all[next][column][row] = -1.0;
         next += 1;
     }
     let mut column = 0;
     while next < D {
-        all[next][column % K][K + column / K] = 1.0;
+        all[next][column % size][size + column / size] = 1.0;
         (next, column) = (next + 1, column + 1);
     }
     all
+}
+
+/// The size of the rotations of a group with these generators; none if it isn't one of rigid motions.
+pub(super) const fn size_of<const N: usize, const D: usize>(basis: &[[[f64; N]; N]; D]) -> Option<usize> {
+    let mut size = 2;
+    while size <= 3 && size < N {
+        if D == turns(size) + size * (N - size) {
+            let (rigid, mut place) = (of_size::<N, D>(size), 0);
+            while place < D * N * N {
+                let (k, row, column) = (place / (N * N), place / N % N, place % N);
+                if rigid[k][row][column] - basis[k][row][column] != 0.0 {
+                    return None;
+                }
+                place += 1;
+            }
+            return Some(size);
+        }
+        size += 1;
+    }
+    None
+}
+
+/// `I + ŷ` for half the coordinates `y` of an increment, or `I − ŷ` for those of its inverse.
+#[hot]
+pub(super) fn factor<T: Real, const N: usize, const D: usize>(size: usize, half: &SVector<T, D>) -> SMatrix<T, N, N> {
+    let mut matrix = SMatrix::identity();
+    for k in 0..turns(size) {
+        let (row, column) = turned(size, k);
+        matrix[(row, column)] = half[k];
+        matrix[(column, row)] = -half[k];
+    }
+    for column in 0..N - size {
+        for row in 0..size {
+            matrix[(row, size + column)] = half[turns(size) + column * size + row];
+        }
+    }
+    matrix
+}
+
+/// The tangent of the Cayley map by half the coordinates, with the columns `2 (A E_j B)^∨` for `A = (I − ŷ)⁻¹` and
+/// `B = (I + ŷ)⁻¹`.
+#[hot]
+pub(super) fn tangent_of_half<T: Real, const N: usize, const D: usize>(
+    size: usize,
+    a: &SMatrix<T, N, N>,
+    b: &SMatrix<T, N, N>,
+) -> SMatrix<T, D, D> {
+    let (turns, mut columns) = (turns(size), SMatrix::zeros());
+    let twice = *a + *a;
+    for j in 0..turns {
+        let (row, column) = turned(size, j);
+        let moved =
+            |a: &SMatrix<T, N, N>, p: usize, q: usize| a[(p, row)] * b[(column, q)] - a[(p, column)] * b[(row, q)];
+        for k in 0..turns {
+            // A rotation's generator has the squared length 2.
+            let (p, q) = turned(size, k);
+            columns[(k, j)] = moved(a, p, q) - moved(a, q, p);
+        }
+        for beside in 0..N - size {
+            for p in 0..size {
+                columns[(turns + beside * size + p, j)] = moved(&twice, p, size + beside);
+            }
+        }
+    }
+    for beside in 0..N - size {
+        for j in 0..size {
+            for p in 0..size {
+                let first = turns + beside * size;
+                columns[(first + p, first + j)] = twice[(p, j)] * b[(size + beside, size + beside)];
+            }
+        }
+    }
+    columns
+}
+
+/// The product `A T` for a [tangent](tangent_of_half) `T`: a translation changes nothing but itself.
+#[hot]
+pub(super) fn times_tangent<T: Real, const N: usize, const D: usize>(
+    size: usize,
+    a: &SMatrix<T, D, D>,
+    tangent: &SMatrix<T, D, D>,
+) -> SMatrix<T, D, D> {
+    let (turns, mut product) = (turns(size), SMatrix::zeros());
+    for i in 0..D {
+        for j in 0..turns {
+            let mut sum = a[(i, 0)] * tangent[(0, j)];
+            for k in 1..D {
+                sum += a[(i, k)] * tangent[(k, j)];
+            }
+            product[(i, j)] = sum;
+        }
+        for beside in 0..N - size {
+            let first = turns + beside * size;
+            for j in first..first + size {
+                let mut sum = a[(i, first)] * tangent[(first, j)];
+                for k in first + 1..first + size {
+                    sum += a[(i, k)] * tangent[(k, j)];
+                }
+                product[(i, j)] = sum;
+            }
+        }
+    }
+    product
 }
 
 /// The square of the distance of the rows below the rotation, whose size is `K`, from those of the identity.

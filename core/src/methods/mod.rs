@@ -28,7 +28,7 @@ pub use composition::{Composition, CompositionScheme};
 #[doc(hidden)]
 pub use gauss::{CollocationMemory, CotangentCarry};
 pub use gauss::{CotangentGauss, Gauss};
-pub use multibody::{BallJoint, BodyPart, Constraint, Multibody, MultibodyStepper, PinJoint, Place, Slope};
+pub use multibody::{BodyPart, Constraint, Joint, Multibody, MultibodyStepper, Place, Redundancy, Slope};
 pub(crate) use splitting::has_force_gradient;
 pub use splitting::{
     DifferentiableFlow, ExactBody, Flow, Inside, KineticFlow, ProcessedScheme, ProcessedSplitting, Splitting,

@@ -258,6 +258,10 @@ impl<T: Real, V: Coordinates<T>, const N: usize> Coordinates<T> for Bodies<V, N>
         matrix.0.iter().fold(most(), |smallest, body| least(smallest, V::least_trace(body, blocks)))
     }
 
+    fn times_blocks(a: &Self::Square, b: &Self::Square, blocks: Blocks) -> Self::Square {
+        BlockDiagonal(filled!(a.0, |k| V::times_blocks(&a.0[k], &b.0[k], blocks)))
+    }
+
     fn trace(matrix: &Self::Square) -> T {
         matrix.0.iter().fold(T::zero(), |sum, body| sum + V::trace(body))
     }

@@ -155,6 +155,10 @@ pub trait Coordinates<T: Real>:
         (*residual * (below * d), *jacobian * (below * d) + slope)
     }
 
+    /// The product `A B` with a `B` of these diagonal blocks.
+    #[must_use]
+    fn times_blocks(a: &Self::Square, b: &Self::Square, blocks: Blocks) -> Self::Square;
+
     /// The trace of a square matrix.
     fn trace(matrix: &Self::Square) -> T;
 
@@ -285,6 +289,24 @@ impl<T: Real, const D: usize> Coordinates<T> for SVector<T, D> {
 
     fn least_trace(matrix: &SMatrix<T, D, D>, blocks: Blocks) -> T {
         elimination::least_trace(matrix, blocks)
+    }
+
+    fn times_blocks(a: &SMatrix<T, D, D>, b: &SMatrix<T, D, D>, blocks: Blocks) -> SMatrix<T, D, D> {
+        let (mut product, mut start) = (SMatrix::<T, D, D>::zeros(), 0);
+        while start < D {
+            let end = blocks.end(start, D);
+            for i in 0..D {
+                for j in start..end {
+                    let mut sum = a[(i, start)] * b[(start, j)];
+                    for k in start + 1..end {
+                        sum += a[(i, k)] * b[(k, j)];
+                    }
+                    product[(i, j)] = sum;
+                }
+            }
+            start = end;
+        }
+        product
     }
 
     fn trace(matrix: &SMatrix<T, D, D>) -> T {

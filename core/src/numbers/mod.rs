@@ -23,7 +23,7 @@ mod columns;
 mod coordinates;
 mod digest;
 mod dual;
-mod elimination;
+pub(crate) mod elimination;
 mod entries;
 mod exact;
 mod history;

@@ -1,7 +1,7 @@
 use liestep::effects::RigidBody;
 use liestep::groups::R3;
 use liestep::mechanics::{Along, Between, Pairs};
-use liestep::methods::BallJoint;
+use liestep::methods::Joint;
 use liestep::{SO3, lagrangian};
 use nalgebra::Vector3;
 
@@ -16,7 +16,7 @@ struct Weight {
     k: f64,
 }
 
-fn put(body: RigidBody, weight: Weight, joint: BallJoint) {
+fn put(body: RigidBody, weight: Weight, joint: Joint) {
     let _ = Along::<3>::of([body]);
     let _ = Pairs::<3>::of([weight]);
     let _ = Between::<0, 1, 3>::of([joint]);

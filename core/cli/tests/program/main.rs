@@ -4,6 +4,8 @@ mod called;
 mod conventions;
 mod ensembles;
 mod groups;
+mod import;
+mod joints;
 mod judged;
 mod lagrangian;
 mod mutated;

@@ -88,19 +88,21 @@ impl Mistake {
 }
 
 /// Words of other programs, each with the name that it stands for here, and advice for where that name is expected.
-const OTHER_WORDS: [(&str, &str, &str); 15] = [
+const OTHER_WORDS: [(&str, &str, &str); 17] = [
     ("hinge", "pin", "a hinge is a `pin`"),
     ("revolute", "pin", "a revolute joint is a `pin`"),
     ("spherical", "ball", "a spherical joint is a `ball`"),
-    ("prismatic", "pin", "there is no joint that slides"),
-    ("fixed", "pin", "bodies that don't move against each other are one body: add their masses and inertias"),
-    ("weld", "pin", "bodies that don't move against each other are one body: add their masses and inertias"),
+    ("continuous", "pin", "a continuous joint is a `pin`"),
+    ("prismatic", "slider", "a prismatic joint is a `slider`"),
+    ("cylindrical", "cylinder", "a cylindrical joint is a `cylinder`"),
+    ("planar", "plane", "a planar joint is a `plane`"),
+    ("rod", "distance", "a rod without mass is a `distance`"),
+    ("fixed", "weld", "a fixed joint is a `weld`"),
     ("world", "space", "the world is `space`"),
     ("ground", "space", "the ground is `space`"),
     ("gravitation", "gravity", "a weight is `gravity`, and a planet's pull that turns a body is `gravity_gradient`"),
     ("wheel", "rotor", "a wheel in the body is a `rotor`"),
     ("damping", "drag", "damping against turning is `drag`"),
-    ("rpy", "yaw_pitch_roll", "roll, pitch and yaw are `yaw_pitch_roll`, yaw first"),
     ("omega", "velocity", "the angular velocity is `velocity`, in the body"),
     ("mass", "m", "the mass is `m`"),
     ("inertia", "J", "a tensor of inertia is `J`, principal moments are `moments`"),

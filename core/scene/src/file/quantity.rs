@@ -54,6 +54,7 @@ quantities! {
     Force: "a force" in "N" 1.0, "mN" 1e-3, "kN" 1e3;
     GravitationalParameter: "a gravitational parameter" in "m³/s²" 1.0, "km³/s²" 1e9;
     Inertia: "a moment of inertia" in "kg m²" 1.0, "g cm²" 1e-7;
+    LinearDamping: "a coefficient of friction" in "N s/m" 1.0, "kg/s" 1.0;
     Length: "a length" in "m" 1.0, "cm" 1e-2, "mm" 1e-3, "km" 1e3;
     MagneticGain: "a magnetic gain" in "A m² s/T" 1.0;
     MagneticMoment: "a magnetic moment" in "A m²" 1.0;
@@ -63,6 +64,7 @@ quantities! {
     Rate: "an angular velocity" in "rad/s" 1.0, "deg/s" DEGREE, "°/s" DEGREE, "rpm" 6.0 * DEGREE;
     Speed: "a speed" in "m/s" 1.0, "km/h" 1.0 / 3.6, "km/s" 1e3;
     Stiffness: "a stiffness" in "N/m" 1.0;
+    TurningStiffness: "a stiffness against turning" in "N m/rad" 1.0, "N m" 1.0, "N m/deg" 1.0 / DEGREE;
     Torque: "a torque" in "N m" 1.0, "mN m" 1e-3, "µN m" 1e-6;
 }
 

@@ -25,17 +25,64 @@ enum Key {
     Quaternion,
     /// `R_z(yaw) R_y(pitch) R_x(roll)`.
     YawPitchRoll,
+    /// Roll, pitch and yaw of `R_z(yaw) R_y(pitch) R_x(roll)`.
+    Rpy,
     /// Angular velocity, body frame.
     Velocity,
     /// Rates of the Euler angles.
     EulerRates,
 }
 
-#[derive(Clone, Copy)]
-enum Attitude {
+/// An attitude, body to space.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "AttitudeTable")]
+pub(crate) enum Attitude {
     Euler(Vector3<f64>),
     /// An attitude by a quaternion, or by yaw, pitch and roll.
     Other(UnitQuaternion<f64>),
+}
+
+impl Attitude {
+    pub(crate) fn rotation(&self) -> UnitQuaternion<f64> {
+        match self {
+            Self::Euler(angles) => from_euler(angles),
+            Self::Other(attitude) => *attitude,
+        }
+    }
+
+    /// The attitude `R_z(yaw) R_y(pitch) R_x(roll)`.
+    fn by_yaw_pitch_roll(angles: &Vector3<f64>) -> Self {
+        // The constructor takes the angles about x, y and z.
+        Self::Other(UnitQuaternion::from_euler_angles(angles.z, angles.y, angles.x))
+    }
+}
+
+/// The keys of an attitude alone.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct AttitudeTable {
+    euler: Option<Triple<Angle>>,
+    quaternion: Option<Components>,
+    yaw_pitch_roll: Option<Triple<Angle>>,
+    rpy: Option<Triple<Angle>>,
+}
+
+impl TryFrom<AttitudeTable> for Attitude {
+    type Error = &'static str;
+
+    fn try_from(table: AttitudeTable) -> Result<Self, Self::Error> {
+        match (table.euler, table.quaternion, table.yaw_pitch_roll, table.rpy) {
+            (Some(angles), None, None, None) => Ok(Self::Euler(angles.value)),
+            (None, Some(components), None, None) => Ok(Self::Other(components.0)),
+            (None, None, Some(angles), None) => Ok(Self::by_yaw_pitch_roll(&angles.value)),
+            (None, None, None, Some(angles)) => Ok(Self::by_yaw_pitch_roll(&reversed(&angles.value))),
+            _ => Err(ATTITUDE),
+        }
+    }
+}
+
+fn reversed(angles: &Vector3<f64>) -> Vector3<f64> {
+    Vector3::new(angles.z, angles.y, angles.x)
 }
 
 #[derive(Clone, Copy)]
@@ -44,7 +91,7 @@ enum Velocity {
     EulerRates(Vector3<f64>),
 }
 
-const ATTITUDE: &str = "an attitude is given by one of `euler`, `quaternion`, `yaw_pitch_roll`";
+const ATTITUDE: &str = "an attitude is given by one of `euler`, `quaternion`, `yaw_pitch_roll`, `rpy`";
 const VELOCITY: &str = "a velocity is given by either `velocity` or `euler_rates`";
 const RATES: &str = "`euler_rates` need the attitude by `euler`";
 
@@ -68,16 +115,20 @@ impl<'de> Visitor<'de> for StartTable {
         let (mut attitude, mut velocity) = (None, None);
         while let Some(key) = table.next_key()? {
             match (key, attitude, velocity) {
-                (Key::Euler | Key::Quaternion | Key::YawPitchRoll, Some(_), _) => return refuse(&mut table, ATTITUDE),
+                (Key::Euler | Key::Quaternion | Key::YawPitchRoll | Key::Rpy, Some(_), _) => {
+                    return refuse(&mut table, ATTITUDE);
+                }
                 (Key::Velocity | Key::EulerRates, _, Some(_)) => return refuse(&mut table, VELOCITY),
-                (Key::Quaternion | Key::YawPitchRoll, _, Some(Velocity::EulerRates(_)))
+                (Key::Quaternion | Key::YawPitchRoll | Key::Rpy, _, Some(Velocity::EulerRates(_)))
                 | (Key::EulerRates, Some(Attitude::Other(_)), _) => return refuse(&mut table, RATES),
                 (Key::Euler, ..) => attitude = Some(Attitude::Euler(table.next_value::<Triple<Angle>>()?.value)),
                 (Key::Quaternion, ..) => attitude = Some(Attitude::Other(table.next_value::<Components>()?.0)),
                 (Key::YawPitchRoll, ..) => {
-                    let angles = table.next_value::<Triple<Angle>>()?.value;
-                    // The constructor takes the angles about x, y and z.
-                    attitude = Some(Attitude::Other(UnitQuaternion::from_euler_angles(angles.z, angles.y, angles.x)));
+                    attitude = Some(Attitude::by_yaw_pitch_roll(&table.next_value::<Triple<Angle>>()?.value));
+                }
+                (Key::Rpy, ..) => {
+                    let angles = reversed(&table.next_value::<Triple<Angle>>()?.value);
+                    attitude = Some(Attitude::by_yaw_pitch_roll(&angles));
                 }
                 (Key::Velocity, ..) => velocity = Some(Velocity::Body(table.next_value::<Triple<Rate>>()?.value)),
                 (Key::EulerRates, ..) => {
@@ -91,11 +142,7 @@ impl<'de> Visitor<'de> for StartTable {
             (Velocity::EulerRates(rates), Attitude::Euler(angles)) => body_velocity(&angles, &rates),
             (Velocity::EulerRates(_), Attitude::Other(_)) => return Err(M::Error::custom(RATES)),
         };
-        let attitude = match attitude {
-            Attitude::Euler(angles) => from_euler(&angles),
-            Attitude::Other(attitude) => attitude,
-        };
-        Ok(Start { attitude, velocity })
+        Ok(Start { attitude: attitude.rotation(), velocity })
     }
 }
 

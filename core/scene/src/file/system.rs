@@ -4,19 +4,20 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use liestep::NonstandardInertia;
-use liestep::mechanics::Inertia;
 use liestep::recording;
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector3};
 use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::body::{INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
 use crate::file::column::{Column, Output};
+use crate::file::joint::{Joint, JointTable, Names};
 use crate::file::mistake::{Mistake, SpanMessage, advised, place_of};
+use crate::file::part::{Between, SystemBody};
 use crate::file::picture::PlanePicture;
+use crate::file::placed::place;
 use crate::file::quantity::{
-    Acceleration, Damping, Direction, Duration, Length, Mass, PositiveScalar, Scalar, Speed, Stiffness, Triple, round,
-    short,
+    Acceleration, Direction, Duration, Length, Mass, PositiveScalar, Scalar, Speed, Stiffness, Triple, round, short,
 };
 use crate::file::schedule::{equal_steps, fraction};
 use crate::file::start::Start;
@@ -27,9 +28,11 @@ use crate::file::text::title;
 /// | table | keys |
 /// |---|---|
 /// | | `title` |
-/// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile) |
+/// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile); without a position a body is placed by a joint with one that has a place |
 /// | `gravity` | `g`, m/s²; `up`, in space |
-/// | `[[joint]]` | `kind`: `ball` or `pin`; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` of a pin: an axis in each of the same frames; `damping`, N m s: the torque of friction is it times the relative angular velocity |
+/// | `[[joint]]` | `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
+/// | | where the joint starts, of a body without a `position`: `angle` and `rate` about the axis, `shift`, m, and `speed`, m/s, along it, of the second body relative to the first, zero by default |
+/// | | in a joint that turns: `damping`, N m s; `stiffness`, N m/rad, with the angle at `rest`; a motor's `torque` about the axis, N m; dry `friction`: its `torque` and the rate `below` which it is viscous. In a slider: `damping`, N s/m; `stiffness`, N/m, with the shift at `rest`; a `force`, N |
 /// | `[[spring]]` | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
 /// | `run` | `duration`; `step`, of which the duration is a whole number; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
 /// | `picture` | `plane`: `xy`, `xz`, `yz`; by default the plane in which the motion is the widest |
@@ -60,34 +63,6 @@ pub(crate) struct SystemPlaces {
     pub(crate) joints: Vec<(usize, usize)>,
     pub(crate) springs: Vec<(usize, usize)>,
     pub(crate) pace: (usize, usize),
-}
-
-#[derive(Clone)]
-pub(crate) struct SystemBody {
-    pub(crate) name: String,
-    pub(crate) m: f64,
-    pub(crate) J: Inertia,
-    /// A kinetic term of second order.
-    pub(crate) kinetic: Kinetic,
-    pub(crate) position: Vector3<f64>,
-    pub(crate) moving: Vector3<f64>,
-    pub(crate) start: Start,
-}
-
-/// A joint or a spring between two bodies, by their numbers; `None` is space.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Between<T> {
-    pub(crate) bodies: [Option<usize>; 2],
-    pub(crate) of: T,
-}
-
-/// A joint of a point of one body with a point of another, from their centres of mass, and of an axis of each for a pin.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Joint {
-    pub(crate) at: [Vector3<f64>; 2],
-    pub(crate) axes: Option<[Vector3<f64>; 2]>,
-    /// The coefficient of friction, N m s.
-    pub(crate) damping: Option<f64>,
 }
 
 /// A spring between two points, from their centres of mass.
@@ -125,9 +100,9 @@ struct BodyTable {
     J_d: Option<NonstandardMoments>,
     J: Option<InertiaRows>,
     kinetic: Option<Spanned<Kinetic>>,
-    position: Triple<Length>,
+    position: Option<Triple<Length>>,
     moving: Option<Triple<Speed>>,
-    start: Start,
+    start: Option<Start>,
 }
 
 #[derive(Deserialize)]
@@ -135,25 +110,6 @@ struct BodyTable {
 struct FieldTable {
     g: Scalar<Acceleration>,
     up: Direction,
-}
-
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Kind {
-    Ball,
-    Pin,
-}
-
-type Names = Spanned<[Spanned<String>; 2]>;
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct JointTable {
-    kind: Spanned<Kind>,
-    bodies: Names,
-    at: [Triple<Length>; 2],
-    axes: Option<Spanned<[Direction; 2]>>,
-    damping: Option<PositiveScalar<Damping>>,
 }
 
 #[derive(Deserialize)]
@@ -210,7 +166,7 @@ impl System {
         let listed = Column::listed(&self.columns, &self.names().collect::<Vec<_>>());
         let unit = |column: recording::Column| {
             // The gap combines a length with the cosines of axes.
-            let is_mixed = column.name == "gap" && self.has_pins();
+            let is_mixed = column.name == "gap" && self.has_cosines();
             if is_mixed { recording::Column { unit: "m, 1".to_owned(), ..column } } else { column }
         };
         listed.into_iter().map(|(column, _)| unit(column)).collect()
@@ -225,8 +181,8 @@ impl System {
         format!("{sum}, {steps} steps of {step} s, hΩ in rad: {}", turns.join(", "))
     }
 
-    pub(crate) fn has_pins(&self) -> bool {
-        self.joints.iter().any(|joint| joint.of.axes.is_some())
+    pub(crate) fn has_cosines(&self) -> bool {
+        self.joints.iter().any(|joint| joint.of.kind.has_cosines())
     }
 
     /// A description of the parts, in words.
@@ -246,13 +202,15 @@ impl System {
 
 fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<System, SpanMessage> {
     let (mut bodies, mut names): (Vec<SystemBody>, Vec<Range<usize>>) = Default::default();
+    let mut is_placed = Vec::new();
     for body in table.body {
-        let body = body_of(body)?;
-        if bodies.iter().any(|other| other.name == body.0.name) {
-            return Err((body.1, format!("there are two bodies called `{}`", body.0.name)));
+        let (body, name, has_place) = body_of(body)?;
+        if bodies.iter().any(|other| other.name == body.name) {
+            return Err((name, format!("there are two bodies called `{}`", body.name)));
         }
-        bodies.push(body.0);
-        names.push(body.1);
+        bodies.push(body);
+        names.push(name);
+        is_placed.push(has_place);
     }
     if bodies.is_empty() {
         return Err((0..0, "a system has a body at least".to_owned()));
@@ -263,8 +221,19 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         let message = format!("two columns of the table would be called `{name}`: give the body another name");
         return Err((names[body].clone(), message));
     }
-    let joints: Vec<_> =
-        table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies)).collect::<Result<_, _>>()?;
+    let joints = table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies));
+    let (joints, coordinates): (Vec<_>, Vec<_>) = joints.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+    let (placing, unplaced) = place(&mut bodies, &mut is_placed, &joints);
+    if let Some(body) = unplaced {
+        let message =
+            "has no place: give its `position` and `start`, or a joint with a body that has one, or with `space`";
+        return Err((names[body].clone(), format!("`{}` {message}", bodies[body].name)));
+    }
+    let idle = coordinates.into_iter().enumerate().find_map(|(k, span)| span.filter(|_| !placing.contains(&k)));
+    if let Some(span) = idle {
+        let message = "both bodies of this joint have places already, so that it doesn't give one: leave this out, or `position` and `start` of one of them";
+        return Err((span, message.to_owned()));
+    }
     let springs = table.spring.into_iter().map(|spring| {
         let SpringTable { bodies: names, at, k, length } = spring.into_inner();
         let spring = Spring { k: k.value, length: length.value, at: at.map(|point| point.value) };
@@ -303,8 +272,8 @@ fn name_twice(columns: &[Column], bodies: &[&str]) -> Option<(usize, String)> {
     })
 }
 
-/// A body, and the place of its name.
-fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>), SpanMessage> {
+/// A body, the place of its name, and whether it has a place in space.
+fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>, bool), SpanMessage> {
     let span = body.span();
     let BodyTable { name, m, moments, J_d, J, kinetic, position, moving, start } = body.into_inner();
     // The name of a body is the prefix of its columns.
@@ -325,10 +294,24 @@ fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>), SpanM
         return Err((kinetic.span(), message.to_owned()));
     }
     let kinetic = kinetic.map_or(Kinetic::Geodesic, Spanned::into_inner);
+    let has_place = position.is_some();
+    let wrong = match (has_place, start.is_some(), moving.is_some()) {
+        (true, false, _) => Some("a body with a `position` has a `start`, too: its attitude and angular velocity"),
+        (false, true, _) => Some("a body with a `start` has a `position`, too; one that joints place has neither"),
+        (false, false, true) => {
+            Some("a body that is `moving` has a `position` and a `start`; joints have `rate` and `speed`")
+        }
+        _ => None,
+    };
+    if let Some(message) = wrong {
+        return Err((name.span(), message.to_owned()));
+    }
     let moving = moving.map_or_else(Vector3::zeros, |moving| moving.value);
+    let position = position.map_or_else(Vector3::zeros, |position| position.value);
+    let start = start.unwrap_or(Start { attitude: UnitQuaternion::identity(), velocity: Vector3::zeros() });
     let place = name.span();
-    let body = SystemBody { name: name.into_inner(), m: m.value, J, kinetic, position: position.value, moving, start };
-    Ok((body, place))
+    let body = SystemBody { name: name.into_inner(), m: m.value, J, kinetic, position, moving, start };
+    Ok((body, place, has_place))
 }
 
 /// The name of space among bodies.
@@ -354,29 +337,12 @@ fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], S
     Ok(numbers)
 }
 
-fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<Between<Joint>, SpanMessage> {
-    let JointTable { kind, bodies: names, at, axes, damping } = joint;
-    let mut between = numbers(&names, bodies)?;
-    let mut ends = at.map(|point| point.value);
-    let mut axes_of = axes.as_ref().map(|axes| axes.get_ref().each_ref().map(|axis| axis.0));
-    // Space has to be the first of the two.
-    if between[1].is_none() {
+/// The joint of two named bodies, and the place of its coordinates at the start. Space comes first.
+fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<(Between<Joint>, Option<Range<usize>>), SpanMessage> {
+    let mut between = numbers(&joint.bodies, bodies)?;
+    let (is_swapped, coordinate) = (between[1].is_none(), joint.coordinate());
+    if is_swapped {
         between.swap(0, 1);
-        ends.swap(0, 1);
-        if let Some(axes) = &mut axes_of {
-            axes.swap(0, 1);
-        }
     }
-    match (kind.get_ref(), axes) {
-        (Kind::Ball, Some(axes)) => {
-            let message = "a ball joint turns about any axis; leave `axes` out, or make it a `pin`";
-            return Err((axes.span(), message.to_owned()));
-        }
-        (Kind::Pin, None) => {
-            return Err((kind.span(), "a pin has `axes`: that of each of its bodies, in that body's frame".to_owned()));
-        }
-        _ => (),
-    }
-    let damping = damping.map(|damping| damping.value);
-    Ok(Between { bodies: between, of: Joint { at: ends, axes: axes_of, damping } })
+    Ok((Between { bodies: between, of: joint.joint(is_swapped)? }, coordinate))
 }

@@ -1,13 +1,16 @@
 //! The system of a file: its bodies, springs and joints.
 
+use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
-use liestep::methods::{BallJoint, Multibody, MultibodyStepper, PinJoint};
-use liestep::{NonstandardInertia, SO3, SetupError, force, lagrangian};
+use liestep::methods::{Multibody, MultibodyStepper, Redundancy};
+use liestep::{NonstandardInertia, SO3, SetupError, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
 use crate::file::body::Kinetic;
-use crate::file::system::{Between, Joint, Spring, System, SystemBody};
+use crate::file::joint::{Joint, Kind};
+use crate::file::part::{Between, SystemBody};
+use crate::file::system::{Spring, System};
 use crate::run::nearest::BodyState;
 
 /// A body with its weight. One of the three kinetic terms has the factor one, the others zero.
@@ -73,24 +76,9 @@ pub(crate) struct Cord {
     at_2: Vector3<f64>,
 }
 
-/// Friction in a joint: the torque `c` times the relative angular velocity, half of its impulse at either end of a step.
-#[force(
-    group(F_1 = SO3, F_2 = SO3),
-    advected(Q = F_2.seen_from(F_1)),
-    displacement(eta_1, eta_2),
-    work = {
-        let turn = Q * log(F_2) - log(F_1);
-        -0.5 * c * (turn.dot(&(Q * eta_2 - eta_1)) + turn.dot(&(Q * (F_2 * eta_2_next) - F_1 * eta_1_next)))
-    },
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Friction {
-    /// Coefficient, N m s.
-    c: f64,
-}
-
 impl System {
-    pub(crate) fn stepper(&self) -> Result<MultibodyStepper, SetupError> {
+    /// The stepper, and the functions of joints that the others imply at the start, which are left out.
+    pub(crate) fn stepper(&self) -> Result<(MultibodyStepper, Vec<Redundancy>), SetupError> {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
         let mut system = Multibody::new();
         for body in &self.bodies {
@@ -114,19 +102,14 @@ impl System {
                 system.between(bodies, Coil { k, length, at_1, at_2 });
             }
         }
-        for &Between { bodies: [above, below], of: Joint { at, axes, damping } } in &self.joints {
-            let (ball, below) = (BallJoint { above: at[0], below: at[1] }, below.unwrap_or_default());
-            if let Some([axis_above, axis_below]) = axes {
-                let pin = PinJoint { above: ball.above, below: ball.below, axis_above, axis_below };
-                system.join(pin, above, below);
-            } else {
-                system.join(ball, above, below);
-            }
-            if let Some(c) = damping {
-                system.between([above, Some(below)], Friction { c });
-            }
+        for &Between { bodies: [above, below], of: joint } in &self.joints {
+            let below = below.unwrap_or_default();
+            system.join(joint.constraint(), above, below);
+            add_terms(&mut system, [above, Some(below)], &joint);
         }
-        system.stepper(self.step)
+        let places: Vec<_> = self.given().into_iter().map(|(place, _)| place).collect();
+        let (system, left_out) = system.independent(&places)?;
+        Ok((system.stepper(self.step)?, left_out))
     }
 
     /// The file's initial configurations and velocities.
@@ -151,5 +134,35 @@ impl System {
         }
         let (bodies, velocities): (Vec<_>, Vec<_>) = self.shifted(self.given()).into_iter().unzip();
         stepper.start_nearest(&bodies, &velocities)
+    }
+}
+
+/// Adds the springs, the friction and the motor of a joint.
+fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) {
+    let Joint { kind, at, axes, terms, .. } = *joint;
+    if kind == Kind::Slider {
+        let axis = axes[0];
+        if terms.has_spring() {
+            // The shift is between the points of both bodies, that of the term from the first body's centre.
+            let (k, rest) = (terms.stiffness.unwrap_or(0.0), terms.rest + axis.dot(&at[0]));
+            system.between(bodies, SliderSpring { k, rest, force: terms.effort.unwrap_or(0.0), axis, at_2: at[1] });
+        }
+        if let Some(c) = terms.damping {
+            system.between(bodies, SliderDamping { c, axis });
+        }
+        return;
+    }
+    if let Some(k) = terms.stiffness {
+        system.between(bodies, JointSpring { k, rest: joint.attitude_at(terms.rest) });
+    }
+    if let Some(torque) = terms.effort {
+        let [axis_1, axis_2] = [axes[0], joint.zero.tr_mul(&axes[0])];
+        system.between(bodies, JointTorque { torque, axis_1, axis_2 });
+    }
+    if let Some(c) = terms.damping {
+        system.between(bodies, JointDamping { c });
+    }
+    if let Some([torque, rate]) = terms.friction {
+        system.between(bodies, DryFriction { torque, rate });
     }
 }

@@ -22,7 +22,7 @@ impl System {
         let mut differences = DMatrix::zeros(self.joints.len(), bodies.len());
         let mut gaps = MatrixXx3::zeros(self.joints.len());
         let mut partings = MatrixXx3::zeros(self.joints.len());
-        for (row, joint) in self.joints.iter().enumerate() {
+        for (row, joint) in self.joints.iter().enumerate().filter(|(_, joint)| joint.of.kind.has_one_point()) {
             for (side, sign) in [(0, -1.0), (1, 1.0)] {
                 let (place, velocity) = point(joint.bodies[side].map(|body| bodies[body]), &joint.of.at[side]);
                 for column in 0..3 {

@@ -3,10 +3,12 @@
 use liestep::SO3;
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
+use liestep::methods::{Constraint as _, Place};
 use nalgebra::{DMatrix, Dyn, Matrix3, Matrix3xX, SymmetricEigen, Vector3};
 
+use crate::file::part::Between;
 use crate::file::quantity::{round, short};
-use crate::file::system::{Between, Joint, Spring, System};
+use crate::file::system::{Spring, System};
 use crate::run::make::Stop;
 
 /// Least distance of a spring's ends, relative to its length at rest. Below it, rounding errors determine the
@@ -155,21 +157,24 @@ impl System {
 
     /// The motions that the joints allow, as columns; none without joints.
     fn free_motions(&self, places: &[(SO3, R3)]) -> Option<DMatrix<f64>> {
-        let mut held: Vec<Matrix3xX<f64>> = Vec::new();
-        for joint in &self.joints {
-            let Joint { at: ends, axes, .. } = joint.of;
-            let apart = |of: &dyn Fn(usize) -> Matrix3xX<f64>| of(1) - of(0);
-            held.push(apart(&|side| self.moved(places, joint.bodies[side], &ends[side])));
-            // Axes turn with their bodies, and shifts don't change them.
-            held.extend(axes.map(|axes| {
-                apart(&|side| {
-                    let mut turned = self.moved(places, joint.bodies[side], &axes[side]);
-                    (0..self.bodies.len()).for_each(|body| turned.fixed_columns_mut::<3>(6 * body + 3).fill(0.0));
-                    turned
-                })
-            }));
-        }
-        let squares = held.iter().map(|held| held.tr_mul(held)).reduce(|sum, one| sum + one)?;
+        let place = |body: Option<usize>| {
+            body.map_or(Place::SPACE, |body| {
+                let (attitude, position) = &places[body];
+                Place { attitude: *attitude.as_matrix(), position: position.translation() }
+            })
+        };
+        let held = self.joints.iter().map(|joint| {
+            let mut held = DMatrix::zeros(6, 6 * self.bodies.len());
+            let slopes = joint.of.constraint().slope(&place(joint.bodies[0]), &place(joint.bodies[1]));
+            for (body, slope) in joint.bodies.into_iter().zip(slopes) {
+                let Some(body) = body else { continue };
+                let turned = slope.turn * places[body].0.as_matrix() * inverse_root(&self.bodies[body].J);
+                held.fixed_columns_mut::<3>(6 * body).copy_from(&turned);
+                held.fixed_columns_mut::<3>(6 * body + 3).copy_from(&(slope.shift / self.bodies[body].m.sqrt()));
+            }
+            held
+        });
+        let squares = held.map(|held: DMatrix<f64>| held.tr_mul(&held)).reduce(|sum, one| sum + one)?;
         let SymmetricEigen { eigenvectors, eigenvalues } = eigen(squares)?;
         let limit = 1e-9 * eigenvalues.max();
         let free = eigenvectors.column_iter().zip(eigenvalues.iter()).filter(|(_, square)| **square <= limit);

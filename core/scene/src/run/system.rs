@@ -1,6 +1,6 @@
 //! The run of a system of several bodies.
 
-use liestep::methods::MultibodyStepper;
+use liestep::methods::{MultibodyStepper, Redundancy};
 use liestep::motion::{AnyStepper, Moment};
 use liestep::recording::Sink;
 use liestep::{SO3, SetupError, StepError};
@@ -8,9 +8,10 @@ use nalgebra::Vector3;
 
 use crate::file::body::Kinetic;
 use crate::file::mistake::Mistake;
+use crate::file::part::SystemBody;
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
-use crate::file::system::{System, SystemBody};
+use crate::file::system::System;
 use crate::run::make::{Course, Listeners, Note, Run, Stop, fast_turn, make, told};
 
 /// The quantity that violates a constraint, for messages.
@@ -33,6 +34,17 @@ fn sample(stepper: &MultibodyStepper, now: &Moment<'_, AnyStepper>) -> Sample {
     let (energy, gap) = (now.energy(), stepper.widest_gap(now.numbers()));
     let (numbers, quaternions) = (Vec::new(), [].into());
     Sample { time: now.time(), bodies, numbers, quaternions, energy, momentum, angular_momentum, gap }
+}
+
+/// The note about functions of a joint that are left out.
+fn left_out_of(one: &Redundancy) -> String {
+    let Redundancy { functions, .. } = *one;
+    let functions = if functions == 1 {
+        "one function of this joint is".to_owned()
+    } else {
+        format!("{functions} functions of this joint are")
+    };
+    format!("{functions} implied by the other joints, and left out; the motion is the same")
 }
 
 impl System {
@@ -70,7 +82,7 @@ impl System {
     }
 
     pub(crate) fn simulate(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Stop> {
-        let stepper = self.stepper().map_err(Stop::Setup)?;
+        let (stepper, left_out) = self.stepper().map_err(Stop::Setup)?;
         let state = self.start(&stepper).map_err(Stop::Start)?;
         let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
         let of_springs = self.check_springs(&places)?;
@@ -80,7 +92,8 @@ impl System {
         let course = Course { steps, end: f64::INFINITY, stride, columns, listed: self.columns() };
         let mut run = make(&any, state, course, |now| sample(&stepper, now), Vec::new(), listeners)?;
         let of_springs = of_springs.map(|(spring, why)| (self.places.springs[spring], why));
-        let notes = of_springs.into_iter().chain(self.fast_turns());
+        let left_out = left_out.into_iter().map(|one| (self.of_joint(one.joint), left_out_of(&one)));
+        let notes = left_out.chain(of_springs).chain(self.fast_turns());
         run.notes = notes.map(|(place, why)| Mistake::of_run(&self.path, place, why)).collect();
         Ok(run)
     }
@@ -121,7 +134,7 @@ impl System {
                 return String::new();
             }
             let widest = run.samples().iter().map(|sample| sample.gap).fold(0.0, f64::max);
-            let unit = if self.has_pins() { "(m and cosines)" } else { "m" };
+            let unit = if self.has_cosines() { "(m and cosines)" } else { "m" };
             format!(", joints open by {widest:.1e} {unit} at most")
         });
         ends + &self.changes(run)

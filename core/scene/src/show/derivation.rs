@@ -1,11 +1,13 @@
 //! The derived equations of the effects, as text.
 
+use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::mechanics::Effect;
 use liestep_late::{Declaration, LateError};
 
 use crate::file::body::{Distribution, Kinetic};
 use crate::file::effects::EFFECTS;
+use crate::file::joint::{Joint, Kind};
 use crate::file::lagrangian::DeclaredTerm;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
@@ -115,21 +117,54 @@ impl SceneFile {
     }
 }
 
-/// The constraints of joints, as in the documentation of `BallJoint` and `PinJoint`.
+/// The constraint of a ball joint, which other kinds have, too, as in the documentation of `liestep::methods::Joint`.
 const BALLS: &str =
     "joints from a body a, or space, to a body b: x_b + R_b ρ_b − x_a − R_a ρ_a = 0 at both ends of a step\n";
-const PINS: &str = "pins, with e_1 and e_2 across the axis n_a: R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0, too\n";
+
+/// The other constraints of a joint of this kind, with `s` for the left side of the above.
+fn constraints(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Ball => "",
+        Kind::Pin => "pins, with e_1 and e_2 across the axis n_a: R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0, too\n",
+        Kind::Universal => "universal joints: R_a n_a · R_b n_b = 0, too\n",
+        Kind::Weld => {
+            "welds, with the columns c_i of Q: R_a e_1 · R_b c_2 = R_a e_2 · R_b c_3 = R_a e_3 · R_b c_1 = 0, too\n"
+        }
+        Kind::Cylinder => {
+            "cylinders, with e_1 and e_2 across the axis n_a, and s the distance of both points: R_a e_1 · s = R_a e_2 · s = R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0\n"
+        }
+        Kind::Slider => {
+            "sliders, with e_1 and e_2 across the axis, and s the distance of both points: R_a e_1 · s = R_a e_2 · s = 0, and the three cosines of a weld\n"
+        }
+        Kind::Plane => {
+            "planes, with e_1 and e_2 across the axis n_a, and s the distance of both points: R_a n_a · s = R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0\n"
+        }
+        Kind::Distance => "rods of the length l between two points at the distance s: (s · s / l − l) / 2 = 0\n",
+    }
+}
 
 impl System {
-    /// The derivation of a body, the terms of springs, and the constraints of joints.
+    /// The derivation of a body, the terms of springs and of joints, and the constraints of joints.
     #[must_use]
     pub fn derivation(&self) -> String {
         let gravity = if self.gravity.is_some() { "" } else { "without gravity, g = 0\n" };
         let has = |is_long: bool| self.springs.iter().any(|spring| (spring.of.length != 0.0) == is_long);
         let springs = if has(true) { Coil::DERIVATION } else { "" };
         let cords = if has(false) { Cord::DERIVATION } else { "" };
-        let joints = if self.joints.is_empty() { "" } else { BALLS };
-        let pins = if self.has_pins() { PINS } else { "" };
-        format!("{}{gravity}{springs}{cords}{joints}{pins}", HeavyBody::DERIVATION)
+        let any = |is: &dyn Fn(&Joint) -> bool| self.joints.iter().any(|joint| is(&joint.of));
+        let slides = |joint: &Joint| joint.kind == Kind::Slider;
+        let terms = [
+            (JointSpring::DERIVATION, any(&|joint| !slides(joint) && joint.terms.stiffness.is_some())),
+            (JointTorque::DERIVATION, any(&|joint| !slides(joint) && joint.terms.effort.is_some())),
+            (JointDamping::DERIVATION, any(&|joint| !slides(joint) && joint.terms.damping.is_some())),
+            (DryFriction::DERIVATION, any(&|joint| joint.terms.friction.is_some())),
+            (SliderSpring::DERIVATION, any(&|joint| slides(joint) && joint.terms.has_spring())),
+            (SliderDamping::DERIVATION, any(&|joint| slides(joint) && joint.terms.damping.is_some())),
+        ];
+        let terms: String = terms.into_iter().filter_map(|(text, is_there)| is_there.then_some(text)).collect();
+        let balls = if any(&|joint| joint.kind.has_one_point()) { BALLS } else { "" };
+        let kinds = Kind::ALL.into_iter().filter(|kind| any(&|joint| joint.kind == *kind)).map(constraints);
+        let kinds: String = kinds.collect();
+        format!("{}{gravity}{springs}{cords}{terms}{balls}{kinds}", HeavyBody::DERIVATION)
     }
 }

@@ -125,7 +125,7 @@ where
 
     /// The change `Dᵀ w`.
     fn change(&self, increment: &SMatrix<T, N, N>) -> Self {
-        transpose_mul(increment, self)
+        transpose_mul_rows(increment, self, G::ROWS.min(N))
     }
 
     /// The rate `ξ̂ᵀ w`.
@@ -145,10 +145,16 @@ where
 /// The product `Aᵀ v`, unrolled.
 #[hot]
 fn transpose_mul<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>) -> SVector<T, N> {
+    transpose_mul_rows(a, v, N)
+}
+
+/// The product `Aᵀ v` for an `A` whose rows from `rows` on are zero.
+#[hot]
+fn transpose_mul_rows<T: Real, const N: usize>(a: &SMatrix<T, N, N>, v: &SVector<T, N>, rows: usize) -> SVector<T, N> {
     let mut product = SVector::zeros();
     for i in 0..N {
         let mut sum = a[(0, i)] * v[0];
-        for j in 1..N {
+        for j in 1..rows {
             sum += a[(j, i)] * v[j];
         }
         product[i] = sum;

@@ -7,6 +7,7 @@ use nalgebra::{Point, SMatrix, SVector};
 
 use super::Advected;
 use crate::groups::LieGroup;
+use crate::groups::affine::times;
 use crate::numbers::{Entries, Real};
 
 /// The homogeneous coordinates `(p, 1)`.
@@ -41,10 +42,17 @@ macro_rules! points {
                 Self::from(moved.fixed_rows::<$dimension>(0).into_owned())
             }
 
+            #[hot]
             fn change(&self, increment: &SMatrix<T, $size, $size>) -> Self {
                 // The change is F⁻¹(p, 1) − (p, 1) = −F⁻¹D(p, 1).
                 let inverse = G::from_increment(increment).inverse().matrix();
-                let change: SVector<T, $size> = -(inverse * (increment * homogeneous(self)));
+                let mut moved = SVector::<T, $size>::zeros();
+                for row in 0..G::ROWS.min($size) {
+                    // The last coordinate is one.
+                    let sum = (1..$dimension).fold(increment[(row, 0)] * self[0], |sum, column| sum + increment[(row, column)] * self[column]);
+                    moved[row] = sum + increment[(row, $dimension)];
+                }
+                let change = -times(&inverse, &moved, G::ROWS);
                 Self::from(change.fixed_rows::<$dimension>(0).into_owned())
             }
 

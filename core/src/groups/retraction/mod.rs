@@ -8,8 +8,8 @@ mod matrix_group;
 
 use nalgebra::{Matrix3, RealField, Vector3};
 
-use crate::groups::{LieGroup, SO3};
-use crate::numbers::{Mask, Real, real};
+use crate::groups::{LieGroup, SO3, SquareOf};
+use crate::numbers::{Coordinates as _, Mask, Real, real};
 
 /// Coordinates `ξ ↦ τ(ξ)` of a group about its identity.
 #[hot]
@@ -34,12 +34,19 @@ pub trait Retraction<G: LieGroup> {
     fn local_coordinates(element: &G) -> Option<G::Vector>;
 
     /// The right-trivialised tangent `T` at `ξ`: `dF F⁻¹ = (T dξ)^`.
-    fn tangent(xi: &G::Vector) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square;
+    fn tangent(xi: &G::Vector) -> SquareOf<G>;
 
     /// The tangent for half the coordinates, `y = ξ/2`: `dF F⁻¹ = (T dy)^`.
     #[must_use]
-    fn tangent_of_half(half: &G::Vector) -> <G::Vector as crate::numbers::Coordinates<G::Scalar>>::Square {
+    fn tangent_of_half(half: &G::Vector) -> SquareOf<G> {
         Self::tangent(&(*half + *half)) * real::<G::Scalar>(2.0)
+    }
+
+    /// The derivative by half the coordinates, from the `jacobian` along `F ↦ exp(t E_j) F`: its product with
+    /// [`tangent_of_half`](Self::tangent_of_half).
+    #[doc(hidden)]
+    fn in_coordinates(jacobian: &SquareOf<G>, half: &G::Vector) -> SquareOf<G> {
+        G::Vector::times_blocks(jacobian, &Self::tangent_of_half(half), G::FACTORS)
     }
 
     /// Whether `times ξ` is so near to the identity that a solution there is on the branch of the identity.
@@ -75,7 +82,10 @@ pub trait Retraction<G: LieGroup> {
 ///
 /// No transcendental function is evaluated, so a step in these coordinates gives the same bits on every IEEE machine.
 /// On SO(3) `ξ = 2 tan(θ/2) n` for the rotation by `θ` about `n`, and only half turns are out of reach; on other groups
-/// the elements with the eigenvalue −1 are. A group that the map leaves, like SL(3), doesn't compile.
+/// the elements with the eigenvalue −1 are.
+///
+/// A group by [`Generators`](crate::groups::Generators) that the map leaves, like SL(3), has coordinates of the second kind
+/// instead: the product `Π cay(ξ_k E_k)` over its generators, which stays in it if each `E_k³` is a multiple of `E_k`.
 #[derive(Clone, Copy, Debug)]
 pub struct CayleyRetraction;
 

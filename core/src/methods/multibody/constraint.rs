@@ -1,4 +1,4 @@
-//! Holonomic constraints on two bodies, and those of joints.
+//! Holonomic constraints on two bodies.
 
 use core::fmt::Debug;
 
@@ -41,7 +41,7 @@ pub struct Slope<const K: usize> {
 
 /// A holonomic constraint on two bodies, or on a body and space: `K` functions of their places, which vanish.
 ///
-/// [`BallJoint`] and [`PinJoint`] are constraints. [`constraint`](macro@crate::constraint) declares another
+/// A [`Joint`](super::Joint) is a constraint. [`constraint`](macro@crate::constraint) declares another
 /// by its functions, and derives its [`slope`](Self::slope). In an implementation by hand, as in
 /// `examples/declarations/strut.rs`, nothing checks that the slope is the derivative of the [`gap`](Self::gap).
 ///
@@ -111,7 +111,7 @@ pub struct Slope<const K: usize> {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no constraint on two bodies",
     label = "not a joint",
-    note = "joints are `BallJoint`, `PinJoint`, and what `#[constraint(…)]` declares"
+    note = "joints are `Joint::ball(…)` and its other kinds, and what `#[constraint(…)]` declares"
 )]
 pub trait Constraint<const K: usize>: Debug + Send + Sync + 'static {
     /// Checks the parameters.
@@ -124,6 +124,11 @@ pub trait Constraint<const K: usize>: Debug + Send + Sync + 'static {
     /// The name, by which descriptions distinguish two kinds with the same parameters.
     fn name(&self) -> &'static str;
 
+    /// The number of functions that are imposed, the first of the `K`; by default all. It doesn't change.
+    fn functions(&self) -> usize {
+        K
+    }
+
     /// The functions, each in a unit of its own: m for lengths, 1 for cosines.
     fn gap(&self, above: &Place, below: &Place) -> SVector<f64, K>;
 
@@ -133,148 +138,4 @@ pub trait Constraint<const K: usize>: Debug + Send + Sync + 'static {
 
     /// Visits the parameters.
     fn describe(&self, visit: &mut dyn FnMut(&'static str, f64));
-}
-
-/// The coincidence of a point of one body with a point of another: three functions, m.
-///
-/// ```text
-/// x_b + R_b ρ_b − x_a − R_a ρ_a = 0
-/// ```
-///
-/// For a pivot, space takes the place of the body above.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BallJoint {
-    /// The joint `ρ_a`, in the axes of the body above, or of space for a pivot, m.
-    pub above: Vector3<f64>,
-    /// The joint `ρ_b`, in the axes of the body below, m.
-    pub below: Vector3<f64>,
-}
-
-/// A [`BallJoint`] whose bodies turn against each other about one axis alone: five functions.
-///
-/// ```text
-/// x_b + R_b ρ_b − x_a − R_a ρ_a = 0          R_a e_1 · R_b n_b = R_a e_2 · R_b n_b = 0
-/// ```
-///
-/// Here `e_1` and `e_2` are at right angles to the axis `n_a`. The sign of an axis doesn't matter: axes that start
-/// parallel stay parallel, and opposite ones opposite.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PinJoint {
-    /// The joint `ρ_a`, in the axes of the body above, or of space for a pivot, m.
-    pub above: Vector3<f64>,
-    /// The joint `ρ_b`, in the axes of the body below, m.
-    pub below: Vector3<f64>,
-    /// The axis `n_a`, in the axes of the body above, of any length.
-    pub axis_above: Vector3<f64>,
-    /// The axis `n_b`, in the axes of the body below, of any length.
-    pub axis_below: Vector3<f64>,
-}
-
-/// Checks that these vectors are finite.
-fn check<const C: usize>(fields: [(&'static str, &Vector3<f64>); C]) -> Result<(), SetupError> {
-    match fields.iter().find(|(_, vector)| !vector.iter().all(|entry| entry.is_finite())) {
-        Some((field, _)) => Err(SetupError::Parameter { field, cause: "is not finite" }),
-        None => Ok(()),
-    }
-}
-
-fn describe<const C: usize>(fields: [(&'static str, &Vector3<f64>); C], visit: &mut dyn FnMut(&'static str, f64)) {
-    for (field, vector) in fields {
-        vector.iter().for_each(|&entry| visit(field, entry));
-    }
-}
-
-impl Constraint<3> for BallJoint {
-    fn name(&self) -> &'static str {
-        "ball joint"
-    }
-
-    fn validate(&self) -> Result<(), SetupError> {
-        check([("above", &self.above), ("below", &self.below)])
-    }
-
-    #[hot]
-    fn gap(&self, above: &Place, below: &Place) -> Vector3<f64> {
-        below.of(&self.below) - above.of(&self.above)
-    }
-
-    #[hot]
-    fn slope(&self, above: &Place, below: &Place) -> [Slope<3>; 2] {
-        let arm = |place: &Place, point: &Vector3<f64>| (place.attitude * point).cross_matrix();
-        [
-            Slope { turn: arm(above, &self.above), shift: -Matrix3::identity() },
-            Slope { turn: -arm(below, &self.below), shift: Matrix3::identity() },
-        ]
-    }
-
-    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
-        describe([("above", &self.above), ("below", &self.below)], visit);
-    }
-}
-
-impl PinJoint {
-    fn ball(&self) -> BallJoint {
-        BallJoint { above: self.above, below: self.below }
-    }
-
-    /// The unit vectors `R_a e_1`, `R_a e_2` and `R_b n_b`.
-    fn directions(&self, above: &Place, below: &Place) -> ([Vector3<f64>; 2], Vector3<f64>) {
-        let axis = self.axis_above.normalize();
-        // The coordinate axis that is farthest from the pin's axis.
-        let far = Vector3::ith(axis.iamin(), 1.0);
-        let first = axis.cross(&far).normalize();
-        let normals = [first, axis.cross(&first)].map(|normal| above.attitude * normal);
-        (normals, below.attitude * self.axis_below.normalize())
-    }
-}
-
-impl Constraint<5> for PinJoint {
-    fn name(&self) -> &'static str {
-        "pin"
-    }
-
-    fn validate(&self) -> Result<(), SetupError> {
-        self.ball().validate()?;
-        for (field, axis) in [("axis_above", &self.axis_above), ("axis_below", &self.axis_below)] {
-            check([(field, axis)])?;
-            let size = axis.norm_squared();
-            if !(size > 0.0 && size.is_finite() && (1.0 / size).is_finite()) {
-                return Err(SetupError::Parameter { field, cause: "has no direction" });
-            }
-        }
-        Ok(())
-    }
-
-    fn gap(&self, above: &Place, below: &Place) -> SVector<f64, 5> {
-        let ball = self.ball().gap(above, below);
-        let ([first, second], axis) = self.directions(above, below);
-        SVector::from([ball.x, ball.y, ball.z, first.dot(&axis), second.dot(&axis)])
-    }
-
-    fn slope(&self, above: &Place, below: &Place) -> [Slope<5>; 2] {
-        let ball = self.ball().slope(above, below).map(|slope| lengthened(&slope));
-        let (normals, axis) = self.directions(above, below);
-        let [mut above, mut below] = ball;
-        for (row, normal) in normals.iter().enumerate() {
-            // η_a × e · n = η_a · (e × n); the body below has the opposite sign.
-            let turn = normal.cross(&axis);
-            above.turn.set_row(3 + row, &turn.transpose());
-            below.turn.set_row(3 + row, &-turn.transpose());
-        }
-        [above, below]
-    }
-
-    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
-        self.ball().describe(visit);
-        describe([("axis_above", &self.axis_above), ("axis_below", &self.axis_below)], visit);
-    }
-}
-
-/// The slope of a ball joint, padded with rows of zeros.
-fn lengthened(slope: &Slope<3>) -> Slope<5> {
-    let zero = SMatrix::<f64, 5, 3>::zeros();
-    let mut all = Slope { turn: zero, shift: zero };
-    all.turn.fixed_rows_mut::<3>(0).copy_from(&slope.turn);
-    all.shift.fixed_rows_mut::<3>(0).copy_from(&slope.shift);
-    all
 }

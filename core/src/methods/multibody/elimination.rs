@@ -176,6 +176,7 @@ fn close(tree: &Tree, nodes: &[Node], loops: &mut [Loop]) {
     for k in 0..loops.len() {
         let (done, rest) = loops.split_at_mut(k + 1);
         let closing = &mut done[k];
+        closing.block = closing.row[k];
         (closing.row[k], closing.pivot, closing.of_joint) = inverted(&closing.row[k], &closing.free, closing.rows);
         let pivot_row = &closing.row;
         for closing in rest {

@@ -61,6 +61,11 @@ pub(super) fn gap(joined: &Joint, places: &[Place]) -> Vector6<f64> {
     joined.functions.gap(place_of(places, joined.above), &places[joined.below])
 }
 
+/// The gap of a joint by all its functions, if some of them aren't imposed.
+pub(super) fn gap_of_all(joined: &Joint, places: &[Place]) -> Option<Vector6<f64>> {
+    joined.functions.gap_of_all(place_of(places, joined.above), &places[joined.below])
+}
+
 impl Equations {
     /// Makes room for these bodies and joints, if the last ones were others. Slopes and matrices aren't set.
     pub(super) fn fit(&mut self, joints: &[Joint], tree: &Tree) {
@@ -309,8 +314,43 @@ impl Equations {
                 return Some((joint, node.pivot));
             }
         }
-        let has_something = |closing: &Loop| closing.pivot > REDUNDANT;
-        let place = self.loops.iter().position(|closing| !has_something(closing))?;
+        let place = self.first_redundant_loop()?;
         Some((tree.loops[place], self.loops[place].pivot))
+    }
+
+    fn first_redundant_loop(&self) -> Option<usize> {
+        let has_something = |closing: &Loop| closing.pivot > REDUNDANT;
+        self.loops.iter().position(|closing| !has_something(closing))
+    }
+
+    /// The first joint that closes a loop and has functions which those before it imply, and the numbers of its others, at
+    /// rest. The pivots of its Schur complement are taken in the order of their sizes, relative to free bodies.
+    pub(super) fn independent(&self, tree: &Tree) -> Option<(usize, Vec<usize>)> {
+        let place = self.first_redundant_loop()?;
+        let closing = &self.loops[place];
+        let (mut block, mut kept) = (closing.block, Vec::new());
+        let mut rest: Vec<usize> = (0..closing.rows).collect();
+        loop {
+            let relative = |&row: &usize| block[(row, row)] / closing.free[row];
+            let Some(best) = (0..rest.len()).max_by(|&a, &b| relative(&rest[a]).total_cmp(&relative(&rest[b]))) else {
+                break;
+            };
+            let row = rest.remove(best);
+            // A NaN counts as zero.
+            let is_independent = relative(&row) > REDUNDANT;
+            if !is_independent {
+                break;
+            }
+            kept.push(row);
+            let (column, pivot) = (block.column(row).into_owned(), block[(row, row)]);
+            for &other in &rest {
+                let factor = block[(row, other)] / pivot;
+                for &another in &rest {
+                    block[(another, other)] -= column[another] * factor;
+                }
+            }
+        }
+        kept.sort_unstable();
+        Some((tree.loops[place], kept))
     }
 }

@@ -1,5 +1,8 @@
 //! Constraints of any number of functions up to six, as values of any type.
 
+use alloc::sync::Arc;
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 use super::constraint::{Constraint, Place};
@@ -15,6 +18,12 @@ pub(super) trait Functions: Send + Sync {
     fn rows(&self) -> usize;
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64>;
+
+    /// The gap by all functions of a joint some of which aren't imposed, as the other joints imply them; `None` if all are.
+    fn gap_of_all(&self, above: &Place, below: &Place) -> Option<Vector6<f64>> {
+        let _ = (above, below);
+        None
+    }
 
     /// The derivatives of the functions, one a column, by the unknowns of the body above and of that below. The maps
     /// `turns` take an unknown to a rotation in the axes of space; an end without a map isn't set.
@@ -36,7 +45,7 @@ impl<C: Constraint<K>, const K: usize> Functions for ConstraintFunctions<C, K> {
     }
 
     fn rows(&self) -> usize {
-        K
+        self.0.functions().min(K)
     }
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64> {
@@ -49,11 +58,11 @@ impl<C: Constraint<K>, const K: usize> Functions for ConstraintFunctions<C, K> {
         let slopes = self.0.slope(above, below);
         for ((slope, turn), columns) in slopes.iter().zip(turns).zip(columns) {
             let Some(turn) = turn else { continue };
-            let turned = slope.turn * turn;
-            for row in 0..K {
+            for row in 0..self.rows() {
                 let mut column = columns.column_mut(row);
+                let turned = slope.turn.row(row) * turn;
                 for k in 0..3 {
-                    column[k] = turned[(row, k)];
+                    column[k] = turned[k];
                     column[3 + k] = slope.shift[(row, k)];
                 }
             }
@@ -62,5 +71,51 @@ impl<C: Constraint<K>, const K: usize> Functions for ConstraintFunctions<C, K> {
 
     fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
         self.0.describe(visit);
+    }
+}
+
+/// A part of the functions of a joint.
+pub(super) struct Part {
+    pub(super) all: Arc<dyn Functions>,
+    /// The numbers of the functions that are imposed, in their order.
+    pub(super) rows: Vec<usize>,
+}
+
+impl Functions for Part {
+    fn validate(&self) -> Result<(), SetupError> {
+        self.all.validate()
+    }
+
+    fn name(&self) -> &'static str {
+        self.all.name()
+    }
+
+    fn rows(&self) -> usize {
+        self.rows.len()
+    }
+
+    fn gap(&self, above: &Place, below: &Place) -> Vector6<f64> {
+        let all = self.all.gap(above, below);
+        Vector6::from_fn(|row, _| self.rows.get(row).map_or(0.0, |&row| all[row]))
+    }
+
+    fn gap_of_all(&self, above: &Place, below: &Place) -> Option<Vector6<f64>> {
+        Some(self.all.gap(above, below))
+    }
+
+    fn slopes(&self, places: [&Place; 2], turns: [Option<&Matrix3<f64>>; 2], [above, below]: [&mut Matrix6<f64>; 2]) {
+        self.all.slopes(places, turns, [&mut *above, &mut *below]);
+        for columns in [above, below] {
+            for (to, &from) in self.rows.iter().enumerate().filter(|(to, from)| to != *from) {
+                let column = columns.column(from).into_owned();
+                columns.set_column(to, &column);
+            }
+        }
+    }
+
+    fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
+        self.all.describe(visit);
+        #[allow(clippy::cast_precision_loss)] // a number below six
+        self.rows.iter().for_each(|&row| visit("imposed", row as f64));
     }
 }

@@ -69,7 +69,10 @@ impl Tree {
             }
         }
         let ends: Vec<_> = joints.iter().map(|joined| [joined.above, Some(joined.below)]).collect();
-        Ok(Self::planted(&ends, bodies, couplings))
+        let mut tree = Self::planted(&ends, bodies, couplings);
+        // A joint that the others imply altogether imposes nothing.
+        tree.loops.retain(|&joint| joints[joint].functions.rows() > 0);
+        Ok(tree)
     }
 
     /// The trees of these bodies without joints.

@@ -25,10 +25,12 @@ mod elimination;
 mod equations;
 mod functions;
 mod graph;
+mod joint;
 mod newton;
 mod nodes;
 mod part;
 mod propagator;
+mod redundancy;
 mod start;
 mod state;
 mod step;
@@ -40,8 +42,10 @@ mod terms;
 mod tests;
 mod workspace;
 
-pub use constraint::{BallJoint, Constraint, PinJoint, Place, Slope};
+pub use constraint::{Constraint, Place, Slope};
+pub use joint::Joint;
 pub use part::BodyPart;
+pub use redundancy::Redundancy;
 pub use stepper::MultibodyStepper;
 pub use system::Multibody;
 

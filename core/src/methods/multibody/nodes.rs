@@ -126,6 +126,8 @@ pub(super) struct Loop {
     /// the trees' joints.
     pub(super) columns: Vec<Vector6<f64>>,
     pub(super) multipliers: Vec<Vector6<f64>>,
+    /// The pivot block of `S_L` before its inversion: its Schur complement by the loops before.
+    pub(super) block: Matrix6<f64>,
     /// A row of the factors of `S_L`, with the inverse pivots on the diagonal.
     pub(super) row: Vec<Matrix6<f64>>,
     /// The diagonal of `S_L` if both bodies were free.
@@ -146,6 +148,7 @@ impl Loop {
             rows,
             columns: zeros.clone(),
             multipliers: zeros,
+            block: Matrix6::zeros(),
             row: vec![Matrix6::zeros(); all[1]],
             free: Vector6::zeros(),
             pivot: 1.0,

@@ -89,7 +89,7 @@ impl MultibodyStepper {
         self.start_with_momentum(&attitudes, &momenta)
     }
 
-    fn check_attitudes(&self, attitudes: &[Body]) -> Result<(), SetupError> {
+    pub(super) fn check_attitudes(&self, attitudes: &[Body]) -> Result<(), SetupError> {
         let all = self.offsets.attitudes();
         check_length("attitude", all / self.bodies() * attitudes.len(), all)?;
         attitudes.iter().try_for_each(check_attitude)
@@ -103,7 +103,7 @@ impl MultibodyStepper {
     }
 
     /// The equations of velocities at these places.
-    fn of_velocities(&self, bodies: &[Body], places: &[Place]) -> Equations {
+    pub(super) fn of_velocities(&self, bodies: &[Body], places: &[Place]) -> Equations {
         let mut equations = self.equations();
         equations.set_velocities(self.joints(), &self.tree, places, &self.limit(bodies));
         equations

@@ -53,6 +53,7 @@ impl MultibodyStepper {
         self.push_forward(work, impulse);
         // The Jacobian was checked along the iteration, but not at its end; the projection checks it there.
         self.project(work).map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
+        self.check_left_out(&work.next_places)?;
         if let Some(forces) = &mut forces {
             work.equations.add_multipliers(&self.tree, -1.0 / self.h, forces);
         }

@@ -10,7 +10,7 @@ roots!();
 
 use super::constraint::Place;
 use super::couplings::{Coupling, couplings};
-use super::equations::gap;
+use super::equations::{gap, gap_of_all};
 use super::graph::{Joint, Tree};
 use super::state::{Offsets, body_at, layout};
 use super::system::{Multibody, ends};
@@ -48,6 +48,8 @@ pub struct MultibodyStepper {
     /// The terms of each body.
     pub(super) ranges: Vec<Range<usize>>,
     pub(super) tree: Tree,
+    /// The joints some of whose functions are left out.
+    pub(super) reduced: Vec<usize>,
     /// The terms that couple bodies within a step.
     pub(super) couplings: Vec<Coupling>,
     /// The bodies without joints: the order in which inertias are eliminated.
@@ -102,10 +104,14 @@ impl MultibodyStepper {
         let (couplings, coupled) = couplings(pairs);
         let tree = Tree::of(&system.joints, system.bodies, coupled)?;
         let free = tree.without_joints();
+        let is_reduced = |joined: &Joint| joined.functions.gap_of_all(&Place::SPACE, &Place::SPACE).is_some();
+        let reduced =
+            system.joints.iter().enumerate().filter(|(_, joined)| is_reduced(joined)).map(|(k, _)| k).collect();
         let place = |body: usize| system.terms.partition_point(|(of, _)| *of < body);
         let ranges = (0..system.bodies).map(|body| place(body)..place(body + 1)).collect();
         let (layout, offsets) = (layout(system.bodies), Offsets::of(system.bodies));
-        let mut stepper = Self { h, system, ranges, tree, couplings, free, lengths: Vec::new(), layout, offsets };
+        let mut stepper =
+            Self { h, system, ranges, tree, reduced, couplings, free, lengths: Vec::new(), layout, offsets };
         stepper.check_inertias(|_| space())?;
         stepper.lengths = (0..stepper.bodies()).map(|body| length(&stepper.at_rest(body, &space()).2)).collect();
         // Some constants aren't finite for any step.
@@ -222,8 +228,7 @@ impl MultibodyStepper {
         self.energy_of(&self.attitudes(state), &self.momenta(state))
     }
 
-    /// The widest gap of a joint, m; for a [`PinJoint`](crate::methods::PinJoint) the norm includes the cosines of its
-    /// axes.
+    /// The widest gap of a joint, m; the norm includes the cosines of its axes, see [`Joint`](crate::methods::Joint).
     #[must_use]
     pub fn widest_gap(&self, state: &[f64]) -> f64 {
         if self.check(state).is_err() {
@@ -235,7 +240,10 @@ impl MultibodyStepper {
 
     /// The joint with the largest gap, in the units of its functions.
     pub(super) fn largest_gap(&self, places: &[Place]) -> (usize, f64) {
-        let gaps = self.joints().iter().enumerate().map(|(joint, joined)| (joint, gap(joined, places).norm()));
+        let gaps =
+            self.joints().iter().enumerate().map(|(joint, joined)| {
+                (joint, gap_of_all(joined, places).unwrap_or_else(|| gap(joined, places)).norm())
+            });
         // A NaN counts as the widest gap.
         gaps.fold((0, 0.0), |widest, gap| if gap.1 <= widest.1 { widest } else { gap })
     }
@@ -292,7 +300,7 @@ impl MultibodyStepper {
     ///
     /// ```
     /// use liestep::groups::{LieGroup as _, R3};
-    /// use liestep::methods::{BallJoint, Multibody};
+    /// use liestep::methods::{Joint, Multibody};
     /// use liestep::{NonstandardInertia, SO3, lagrangian};
     /// use nalgebra::{Vector3, Vector6};
     ///
@@ -311,7 +319,7 @@ impl MultibodyStepper {
     /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(0.1, 0.2, 0.25))?;
     /// let mut system = Multibody::new();
     /// let body = system.body(Heavy { J_d, m: 1.0, g: 9.81 });
-    /// system.join(BallJoint { above: Vector3::zeros(), below: Vector3::z() * 0.4 }, None, body);
+    /// system.join(Joint::ball([Vector3::zeros(), Vector3::z() * 0.4]), None, body);
     /// let stepper = system.stepper(0.01)?;
     /// let state = stepper.start(&[(SO3::identity(), R3::from(Vector3::z() * -0.4))], &[Vector6::zeros()])?;
     /// let forces = stepper.reactions(&state)?;

@@ -27,7 +27,7 @@ use crate::mechanics::Effect;
 ///
 /// ```
 /// use liestep::groups::R3;
-/// use liestep::methods::{BallJoint, Multibody};
+/// use liestep::methods::{Joint, Multibody};
 /// use liestep::{NonstandardInertia, SO3, lagrangian};
 /// use nalgebra::{Vector3, Vector6};
 ///
@@ -64,11 +64,11 @@ use crate::mechanics::Effect;
 /// for k in 0..4 {
 ///     let body = swing.body(Rod { J_d, m: 1.0, g: 9.81, up: Vector3::z() });
 ///     match body.checked_sub(1) {
-///         None => swing.join(BallJoint { above: Vector3::zeros(), below: left }, None, body),
-///         Some(before) => swing.join(BallJoint { above: right, below: left }, Some(before), body),
+///         None => swing.join(Joint::ball([Vector3::zeros(), left]), None, body),
+///         Some(before) => swing.join(Joint::ball([right, left]), Some(before), body),
 ///     }
 /// }
-/// swing.join(BallJoint { above: Vector3::x() * 3.0, below: right }, None, 3);
+/// swing.join(Joint::ball([Vector3::x() * 3.0, right]), None, 3);
 /// swing.between([None, Some(1)], Cord { k: 5.0, at_1: Vector3::x() * 1.5, at_2: right });
 /// let stepper = swing.stepper(0.01)?;
 ///
@@ -143,7 +143,7 @@ impl Multibody {
     ///
     /// ```
     /// use liestep::groups::R3;
-    /// use liestep::methods::{BallJoint, Multibody};
+    /// use liestep::methods::{Joint, Multibody};
     /// use liestep::{NonstandardInertia, SO3, force, lagrangian};
     /// use nalgebra::{Vector3, Vector6};
     ///
@@ -178,8 +178,8 @@ impl Multibody {
     /// let mut pendulum = Multibody::new();
     /// let upper = pendulum.body(Rod { J_d, m: 1.0, g: 9.81 });
     /// let lower = pendulum.body(Rod { J_d, m: 1.0, g: 9.81 });
-    /// pendulum.join(BallJoint { above: Vector3::zeros(), below: left }, None, upper);
-    /// pendulum.join(BallJoint { above: right, below: left }, Some(upper), lower);
+    /// pendulum.join(Joint::ball([Vector3::zeros(), left]), None, upper);
+    /// pendulum.join(Joint::ball([right, left]), Some(upper), lower);
     /// pendulum.between([Some(upper), Some(lower)], Friction { c: 50.0 });
     /// let stepper = pendulum.stepper(0.01)?;
     /// let start = [0.5, 1.5].map(|x| (SO3::identity(), R3::from(Vector3::x() * x)));

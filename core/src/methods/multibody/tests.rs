@@ -13,7 +13,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{R3, SO3};
 use crate::laws::samples::{Random, derivative};
 use crate::mechanics::NonstandardInertia;
-use crate::methods::BallJoint;
+use crate::methods::Joint;
 use crate::motion::Propagator;
 
 /// A body with its weight.
@@ -55,8 +55,8 @@ fn rod(m: f64, c: f64) -> Rod {
     Rod { J_d, m, g: 9.81, c, up: Vector3::z(), e: Vector3::x() }
 }
 
-fn ball(above: Vector3<f64>, below: Vector3<f64>) -> BallJoint {
-    BallJoint { above, below }
+fn ball(above: Vector3<f64>, below: Vector3<f64>) -> Joint {
+    Joint::ball([above, below])
 }
 
 /// Links of one metre in a row from the origin, and the end of the last.

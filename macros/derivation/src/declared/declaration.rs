@@ -76,6 +76,8 @@ pub struct Declaration {
     /// The path of liestep, if not `::liestep`.
     pub root: Option<Path>,
     pub group: Group,
+    /// The generators of a user's group, each at its place.
+    pub generators: Vec<Span>,
     /// The increments, one for each factor of the group.
     pub factors: Vec<Factor>,
     pub advected: Vec<AdvectedParameter>,

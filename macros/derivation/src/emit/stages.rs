@@ -154,7 +154,7 @@ fn in_coordinates(
     );
     (
         quote_spanned!(span=> let increment = #retraction::increment_of_half(half); #inverse),
-        quote_spanned!(span=> (#jacobian) * #retraction::tangent_of_half(half)),
+        quote_spanned!(span=> #retraction::in_coordinates(&(#jacobian), half)),
     )
 }
 

@@ -9,6 +9,7 @@ use super::verify::{self, KineticPart, Objection, Row, TermMistake};
 use crate::declared::check;
 use crate::declared::errors::Errors;
 use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Role, Tree};
+use crate::mathematics::chart::Chart;
 use crate::mathematics::derive::{ForceError, LimitError, Refusal};
 
 /// Reports the terms that can't be intended; `None` if there are any.
@@ -229,14 +230,15 @@ pub(super) enum Misfit {
 
 /// Reports a discretisation that doesn't fit the group or the Lagrangian.
 pub(super) fn misfit(misfit: Misfit, asked: Discretisation, declaration: &Declaration, errors: &mut Errors) {
-    let (name, instead) = match asked.quadrature {
-        Quadrature::Trapezoid => ("trapezoid", "trapezoid(Cayley)"),
-        Quadrature::Midpoint => ("midpoint", "chord(Cayley)"),
-        Quadrature::Chord => ("chord", "chord(Cayley)"),
+    let name = match asked.quadrature {
+        Quadrature::Trapezoid => "trapezoid",
+        Quadrature::Midpoint => "midpoint",
+        Quadrature::Chord => "chord",
     };
+    let instead = by_cayley(asked.quadrature, declaration);
     let message = match misfit {
         Misfit::NoLogarithm => {
-            format!("no closed logarithm is known on this group, which `{name}(exp)` needs: write `{instead}`")
+            format!("no closed logarithm is known on this group, which `{name}(exp)` needs: {instead}")
         }
         Misfit::NoCayley => {
             "no closed inverse of the Cayley map is known on this group: declare `l_d` by hand".to_owned()
@@ -252,27 +254,43 @@ pub(super) fn misfit(misfit: Misfit, asked: Discretisation, declaration: &Declar
             };
             format!(
                 "`{name}` puts the matrix `({increment} - I) / h` in the place of the velocity{which}, which may stand \
-                 {forms} alone: write `{instead}`"
+                 {forms} alone: {instead}"
             )
         }
     };
     let message = if asked.coordinates == Coordinates::Ambient || !matches!(misfit, Misfit::NotInMatrix(_)) {
         message
     } else {
-        format!("`{name}` doesn't fit this Lagrangian: write `{instead}`")
+        format!("`{name}` doesn't fit this Lagrangian: {instead}")
     };
     errors.push_between(asked.place, message);
 }
 
+/// Reports a generator of a group without coordinates of increments.
+pub(super) fn leaves_group(generator: usize, declaration: &Declaration, errors: &mut Errors) {
+    let place = declaration.generators.get(generator).copied().unwrap_or_else(Span::call_site);
+    errors.push_decisive(
+        place,
+        "the Cayley map leaves this group, and the cube of this generator isn't a multiple of it: choose generators `E` \
+         with `E³ = c E`, as matrices with one entry and `E_ii - E_jj`",
+    );
+}
+
+/// The advice for a discretisation that doesn't fit: the one by the Cayley map, where the group has coordinates by it.
+fn by_cayley(quadrature: Quadrature, declaration: &Declaration) -> String {
+    match quadrature {
+        _ if declaration.group.chart() != Ok(Chart::Cayley) => "declare `l_d` by hand".to_owned(),
+        Quadrature::Trapezoid => "write `trapezoid(Cayley)`".to_owned(),
+        Quadrature::Midpoint | Quadrature::Chord => "write `chord(Cayley)`".to_owned(),
+    }
+}
+
 /// Reports a discretisation that isn't its own adjoint.
-pub(super) fn not_self_adjoint(asked: Discretisation, errors: &mut Errors) {
-    let instead = match asked.quadrature {
-        Quadrature::Trapezoid => "trapezoid(Cayley)",
-        Quadrature::Midpoint | Quadrature::Chord => "chord(Cayley)",
-    };
+pub(super) fn not_self_adjoint(asked: Discretisation, declaration: &Declaration, errors: &mut Errors) {
+    let instead = by_cayley(asked.quadrature, declaration);
     let message = format!(
         "with this discretisation `l_d` isn't its own adjoint, so the order is 1 and a step of −h doesn't undo a step of \
-         h: write `{instead}`"
+         h: {instead}"
     );
     errors.push_between(asked.place, message);
 }

@@ -11,6 +11,10 @@ use crate::mathematics::derive::SelfAdjointness;
 
 /// Verifies the whole derivation; `None` if the Lagrangian or the derivation is wrong, which has been reported.
 pub fn findings(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Choice, errors: &mut Errors) -> Option<Findings> {
+    if let Err(generator) = declaration.group.chart() {
+        explain::leaves_group(generator, declaration, errors);
+        return None;
+    }
     let Choice { lowered, derived, kernel } = chosen;
     let of = Subject { declaration, tree, lowered, derived };
     // A term without a kinetic part is a potential or a force, added to another term.
@@ -22,7 +26,7 @@ pub fn findings(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Choice, err
         Ok(verified) => {
             let asked = declaration.discretisation().filter(|_| verified.self_adjointness == SelfAdjointness::No);
             if let Some(asked) = asked {
-                explain::not_self_adjoint(asked, errors);
+                explain::not_self_adjoint(asked, declaration, errors);
                 return None;
             }
             let hypotheses = if is_force { Vec::new() } else { hypotheses::hypotheses(declaration, tree, chosen) };

@@ -2,6 +2,7 @@
 //!
 //! The run-time half declares the same generators; the compiler compares the two in every expansion.
 
+use super::chart::{Chart, chart};
 use crate::mathematics::symbolic::Rational;
 
 /// A matrix Lie group by its generators.
@@ -133,6 +134,16 @@ impl Group {
         };
         let orthogonal = generators.iter().all(skew);
         Self { size, generators, orthogonal, is_so3: false, is_added: false, factors: Vec::new() }
+    }
+
+    /// Coordinates of increments that stay in the group; the index of a generator that has none. Those of a product are those
+    /// of its factors.
+    pub fn chart(&self) -> Result<Chart, usize> {
+        if self.is_product() {
+            return Ok(Chart::Cayley);
+        }
+        let numbers = self.generators.iter().map(|one| one.iter().map(|entry| entry.to_f64()).collect());
+        chart(&numbers.collect::<Vec<Vec<f64>>>())
     }
 
     /// The defect of generators that aren't a basis of a Lie algebra, in exact arithmetic; `None` if its range is too

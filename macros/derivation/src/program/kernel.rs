@@ -8,6 +8,7 @@ use super::expand::expanded;
 use super::graph::{Graph, Input, Node, NodeId};
 use super::retraction::{denominator, rotation, translation};
 use super::scalarise::{Entries, Scalariser};
+use super::zeros::without_zeros;
 use crate::mathematics::derive::{ClearedSystem, Continuous, Derivation, OfFactor, unit};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Expression, Rational, Stage, SymbolId, Symbols};
@@ -231,7 +232,8 @@ pub fn kernel(derived: &Derivation) -> Kernel {
     });
     let kick_after = {
         let given = after(&mut graph, derived, increment.clone());
-        components(&mut graph, derived, &given, &derived.kick_after)
+        let kick = components(&mut graph, derived, &given, &derived.kick_after);
+        without_zeros(&mut graph, derived, &kick)
     };
     let mut found: Vec<(Candidate, Vec<NodeId>)> = Vec::new();
     let mut add = |graph: &Graph, name, denominators, outputs: Vec<NodeId>| {
@@ -243,6 +245,7 @@ pub fn kernel(derived: &Derivation) -> Kernel {
         let given = with_inverse(&mut graph, derived, increment);
         let given = with_lets(&mut graph, derived, given);
         let outputs = system(&mut graph, derived, &given);
+        let outputs = without_zeros(&mut graph, derived, &outputs);
         add(&graph, "in F", 0, outputs);
     } else {
         let (retracted, opaque) = retracted(&mut graph, derived);

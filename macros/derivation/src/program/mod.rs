@@ -2,7 +2,7 @@
 //!
 //! `scalarise` reduces matrices to their entries, `graph` stores equal operations once, each a `node`, `expand`
 //! multiplies out, `closed` has the `let`s that stay closed, `kernel` the step, in the coordinates of `retraction`,
-//! `stages` the values passed between its stages, `terms` the derived terms without stages, `tangent` and `gradient`
+//! `zeros` leaves out entries that a group doesn't have, `stages` the values passed between its stages, `terms` the derived terms without stages, `tangent` and `gradient`
 //! the derivatives of a step, and `count` its cost.
 //!
 //! Deliberately not here: tokens, the group of the user's declaration by any name, and the choice between two programs
@@ -21,6 +21,7 @@ mod scalarise;
 mod stages;
 mod tangent;
 mod terms;
+mod zeros;
 
 pub use closed::{Beginning, KnownEntries, with_values};
 pub use count::count;

@@ -3,10 +3,11 @@
 //! The order of operations is that of the library's groups.
 
 use super::StepRefusal;
-use super::basis::{Basis, Chart, Form};
+use super::basis::{Basis, Form};
 use super::matrix::Matrix;
 use super::relations::{Relations, restored};
 use super::values::{Value, Words};
+use crate::mathematics::chart::{Chart, cube, times};
 use crate::staged::{Array, Source};
 
 /// A factor of the group, and its place among all.
@@ -132,8 +133,7 @@ impl MatrixFactor {
             return rotation(words, half);
         }
         if self.chart == Chart::Product {
-            let (element, identity) = (self.product(words, half).1, Matrix::identity(self.size()));
-            return element.minus(words, &identity);
+            return self.product(words, half).1;
         }
         let doubled = words.added(half, half);
         let hat = self.hat(words, &doubled);
@@ -150,16 +150,18 @@ impl MatrixFactor {
         (one.minus(words, &half), one.plus(words, &half))
     }
 
-    /// The right-trivialised tangent, column by column, and `F`, of the product of Cayley maps.
+    /// The right-trivialised tangent, column by column, and `F − I`, of the product of Cayley maps.
     ///
     /// Where `E³ = c E`, `cay(2y E) = I + (2y E + 2y² E²)/(1 − c y²)`, and its logarithmic derivative by `y` is
     /// `2E/(1 − c y²)`.
     fn product(&self, words: &mut Words, half: &[Value]) -> (Vec<Vec<Value>>, Matrix) {
         let n = self.size();
-        let (mut before, mut inverse) = (Matrix::identity(n), Matrix::identity(n));
+        let one = Matrix::identity(n);
+        let (mut increment, mut inverse) = (Matrix::of(n, n, |_, _| Value::ZERO), one.clone());
         let mut columns = Vec::new();
         for (e, &y) in self.basis.generators.iter().zip(half) {
-            let c = self.basis.cube(e).unwrap_or(0.0);
+            let before = increment.plus(words, &one);
+            let c = cube(e).unwrap_or(0.0);
             let squared = words.multiply(y, y);
             let fraction = words.multiply(Value::of(c), squared);
             let below = words.subtract(Value::ONE, fraction);
@@ -168,14 +170,13 @@ impl MatrixFactor {
             columns.push(self.vee(words, &moved));
             let (first, second) = (words.multiply(two, y), words.multiply(two, squared));
             let linear = Matrix::known(n, e).scaled(words, first);
-            let square = Matrix::known(n, &self.basis.times(e, e)).scaled(words, second);
-            let one = Matrix::identity(n);
+            let square = Matrix::known(n, &times(e, e)).scaled(words, second);
             let [plus, minus] = [square.plus(words, &linear), square.minus(words, &linear)];
-            let forwards = one.plus(words, &plus);
-            before = before.times(words, &forwards);
+            let change = before.times(words, &plus);
+            increment = increment.plus(words, &change);
             inverse = one.plus(words, &minus).times(words, &inverse);
         }
-        (columns, before)
+        (columns, increment)
     }
 
     /// The tangent by half the coordinates, column by column.

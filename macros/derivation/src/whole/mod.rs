@@ -10,15 +10,14 @@
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!
-//! The files depend on each other in one direction: `step → {limit, certified, tangent} → writer → {actions, solved} → factor → relations → {basis
-//! → linear, matrix → values}`.
+//! The files depend on each other in one direction: `step → {limit, certified, tangent} → writer → {actions, solved} → factor → relations → {basis,
+//! matrix → values}`.
 
 mod actions;
 mod basis;
 mod certified;
 mod factor;
 mod limit;
-mod linear;
 mod matrix;
 mod relations;
 mod solved;
@@ -29,7 +28,8 @@ mod writer;
 
 use std::fmt;
 
-pub use basis::{Basis, Chart, Form};
+pub use crate::mathematics::chart::Chart;
+pub use basis::{Basis, Form};
 pub use factor::MatrixFactor;
 pub use step::{Programs, Sizes, WholeStep};
 pub use values::{Value, Words};

@@ -6,9 +6,10 @@
 //! describe all classical groups and their affine extensions; an invariant of the third order isn't among them.
 
 use super::basis::{Basis, Form};
-use super::linear::kernel;
 use super::matrix::Matrix;
 use super::values::{Value, Words};
+use crate::mathematics::chart::times;
+use crate::mathematics::linear::kernel;
 use crate::staged::Function;
 
 /// The row and the column of an entry.
@@ -31,7 +32,7 @@ pub(super) struct Relations {
 impl Relations {
     pub(super) fn of(basis: &Basis) -> Self {
         let (n, all) = (basis.size, &basis.generators);
-        let products = || all.iter().flat_map(|a| all.iter().map(|b| basis.times(a, b)));
+        let products = || all.iter().flat_map(|a| all.iter().map(|b| times(a, b)));
         let of_entries = |entries: &[Vec<f64>]| kernel(entries.to_vec(), n * n);
         if products().all(|product| basis.has(&product)) {
             return Self { linear: of_entries(all), ..Self::default() };

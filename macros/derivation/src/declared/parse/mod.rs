@@ -101,6 +101,8 @@ pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, 
     let mut arguments = read_arguments(role, arguments, errors);
     // An argument that seems to be missing may be one that couldn't be read.
     let is_readable = errors.is_empty();
+    let written = arguments.generators.iter().flat_map(|(_, all)| &all.elems);
+    let generators = written.map(syn::spanned::Spanned::span).collect();
     let (group_path, group, factors) = groups(&mut arguments, is_readable, errors);
     if let [Factor { path: Some(_), .. }] = factors.as_slice() {
         let (velocity, l, name) = (&mut arguments.velocity, &mut arguments.continuous, factors[0].group_name());
@@ -156,6 +158,7 @@ pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, 
         role,
         root: arguments.root,
         group,
+        generators,
         factors,
         advected,
         expression: expression.filter(|_| has_meaning),

@@ -5,6 +5,7 @@ use std::rc::Rc;
 use crate::declared::{Coordinates, Declaration, Kind, Name, Shape, Tree};
 use crate::judged::explain::Misfit;
 use crate::judged::verify;
+use crate::mathematics::chart::Chart;
 use crate::mathematics::derive::View;
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational, Variance};
@@ -180,6 +181,9 @@ impl Build<'_> {
 
     /// `ξ` with `cay(ξ̂) = F`, by the shortest of the formulas that hold on the group.
     pub(super) fn cayley_coordinates(&self) -> Result<Rc<Tree>, Misfit> {
+        if self.group().chart() != Ok(Chart::Cayley) {
+            return Err(Misfit::NoCayley);
+        }
         let element = self.cayley_candidates().into_iter().map(|candidate| self.named(candidate)).find(|candidate| {
             let components = self.components(candidate.clone());
             verify::is_cayley_coordinates(self.group(), Name::Increment(self.factor), &components)

@@ -4,7 +4,7 @@ use core::array::from_fn;
 
 use liestep::groups::{CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::Random;
-use liestep::methods::{BallJoint, Chain, PinJoint};
+use liestep::methods::{Chain, Joint};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError};
 use nalgebra::{Vector3, Vector6};
@@ -26,10 +26,10 @@ fn checked<const N: usize>(chain: &Chain<N>, h: f64) -> Result<Linkage<N>, Setup
     let joints: [_; N] = from_fn(|k| {
         let below = -chain.links[k].c;
         if k == 0 {
-            return Connection::to_space(BallJoint { above: Vector3::zeros(), below }, 0);
+            return Connection::to_space(Joint::ball([Vector3::zeros(), below]), 0);
         }
         let upper = chain.links[k - 1];
-        Connection::between(BallJoint { above: upper.rho - upper.c, below }, k - 1, k)
+        Connection::between(Joint::ball([upper.rho - upper.c, below]), k - 1, k)
     });
     jointed(falling(bodies, chain.g, chain.up), &joints, h)
 }
@@ -141,13 +141,16 @@ fn a_tree() {
         m: 0.5 + next(1.0).x.abs(),
         K: NonstandardInertia::from_principal_moments(Vector3::new(0.05, 0.06, 0.07) + next(0.01)).unwrap(),
     });
-    let joints: [BallJoint; N] = from_fn(|_| BallJoint { above: next(0.5), below: next(0.5) });
+    let points: [[Vector3<f64>; 2]; N] = from_fn(|_| [next(0.5), next(0.5)]);
     let parents = [None, Some(0), Some(0), Some(0), Some(2)];
-    let straight: [Connection<BallJoint>; N] =
-        from_fn(|k| Connection { joint: joints[k], above: parents[k], below: k });
-    let turned: [Connection<BallJoint>; N] = from_fn(|k| {
-        let Connection { joint, above, below } = straight[N - 1 - k];
-        let back = BallJoint { above: joint.below, below: joint.above };
+    let straight: [Connection<Joint>; N] = from_fn(|k| {
+        let joint = Joint::ball(points[k]);
+        Connection { joint, above: parents[k], below: k }
+    });
+    let turned: [Connection<Joint>; N] = from_fn(|k| {
+        let Connection { above, below, .. } = straight[N - 1 - k];
+        let [upper, lower] = points[N - 1 - k];
+        let back = Joint::ball([lower, upper]);
         above.map_or(straight[N - 1 - k], |above| Connection::between(back, below, above))
     });
     let about: [Body; N] = from_fn(|_| {
@@ -155,7 +158,7 @@ fn a_tree() {
         (turn, R3::from(next(1.0)))
     });
     let moving: Components<N> = from_fn(|_| six(&next(1.0), &next(1.0)));
-    let pivot = joints[0].above;
+    let [pivot, _] = points[0];
     let about_pivot = |[p, l]: [Vector3<f64>; 2]| (l - pivot.cross(&p)).z;
     let ends = [straight, turned].map(|tree| {
         let stepper = jointed(falling(bodies, 9.81, Vector3::z()), &tree, 0.005).unwrap();
@@ -199,23 +202,23 @@ fn errors_name_the_joint() {
     assert!(apart(&stepper.turns(&state), &attitudes) < 1e-14);
     assert!(found.iter().zip(stepper.velocities(&right)).all(|(a, b)| (a - b).amax() < 1e-13));
 
-    let link = BallJoint { above: Vector3::z(), below: -Vector3::z() };
+    let (end, link) = (Vector3::z(), Joint::ball([Vector3::z(), -Vector3::z()]));
     let bodies = falling([MassAndInertia { m: 1.0, K: rods::<1>(1.0).links[0].J_d }; 3], 9.81, Vector3::z());
-    let refused = |joints: [Connection<BallJoint>; 2]| jointed(bodies, &joints, 0.01).unwrap_err();
+    let refused = |joints: [Connection<Joint>; 2]| jointed(bodies, &joints, 0.01).unwrap_err();
     let first = Connection::between(link, 0, 1);
     assert!(matches!(refused([first, Connection::between(link, 1, 3)]), SetupError::Joint { joint: 1, .. }));
     assert!(matches!(refused([first, Connection::between(link, 2, 2)]), SetupError::Joint { joint: 1, .. }));
     // Two ball joints at different points of two bodies close a loop, and are redundant in part.
-    let twice = [first, Connection::between(BallJoint { above: -link.above, below: -link.below }, 1, 0)];
+    let twice = [first, Connection::between(Joint::ball([-end, end]), 1, 0)];
     let redundant = jointed(bodies, &twice, 0.01).unwrap();
     let at = [0.0, 2.0, 9.0].map(|z| (SO3::identity(), R3::from(Vector3::z() * z)));
     let error_of_two = redundant.start(&at, &[Vector6::zeros(); 3]).unwrap_err();
     assert!(matches!(error_of_two, SetupError::RedundantJoint { joint: 1, .. }), "{error_of_two}");
-    let broken = BallJoint { below: Vector3::new(0.0, f64::NAN, 0.0), ..link };
+    let broken = Joint::ball([end, Vector3::new(0.0, f64::NAN, 0.0)]);
     let broken = refused([first, Connection::between(broken, 1, 2)]);
     assert!(matches!(broken, SetupError::JointParameter { joint: 1, field: "below", .. }), "{broken}");
     let (axis_above, axis_below) = (Vector3::zeros(), Vector3::x());
-    let pin = PinJoint { above: Vector3::z(), below: Vector3::z(), axis_above, axis_below };
+    let pin = Joint::pin([Vector3::z(), Vector3::z()], [axis_above, axis_below]);
     let broken = jointed(bodies, &[Connection::between(pin, 0, 1)], 0.01).unwrap_err();
     assert!(matches!(broken, SetupError::JointParameter { joint: 0, field: "axis_above", .. }), "{broken}");
     assert!(matches!(checked(&chain, f64::NAN), Err(SetupError::InvalidStep { .. })));
@@ -239,7 +242,7 @@ fn small_and_slow() {
         let (e, mass) = (Vector3::x() * (0.5 * size), size * size * size);
         let moments = Vector3::new(0.02, 0.1, 0.1) * (mass * size * size);
         let K = NonstandardInertia::from_principal_moments(moments).unwrap();
-        let link = BallJoint { above: e, below: -e };
+        let link = Joint::ball([e, -e]);
         let joints = [Connection::between(link, 0, 1), Connection::between(link, 1, 2)];
         let stepper = jointed(falling([MassAndInertia { m: mass, K }; 3], 0.0, Vector3::z()), &joints, 0.01).unwrap();
         let about = row([0.9, 0.2, -0.5]).0.map(|(turn, place)| (turn, R3::from(place.translation() * size)));

@@ -7,7 +7,7 @@ use declarations::motions::{number, read};
 use liestep::groups::R3;
 use liestep::laws::samples::Random;
 use liestep::mechanics::Along;
-use liestep::methods::{BallJoint, PinJoint};
+use liestep::methods::Joint;
 use liestep::motion::Propagator as _;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
@@ -15,8 +15,8 @@ use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
 use super::super::{all, apart};
 use super::loops::{closed_loop, loop_of_three, state_of};
 use super::{
-    BallOrPin, Components, Connection, EPSILON, LEFT, Linkage, MassAndInertia, RIGHT, assert_no_work, ball, chained,
-    falling, jointed, plain, rod, row, six, system,
+    Components, Connection, EPSILON, LEFT, Linkage, MassAndInertia, RIGHT, assert_no_work, ball, chained, falling,
+    jointed, plain, rod, row, six, system,
 };
 
 /// A force that is prescribed for each step: if it is the weight of the bodies, the step is that under gravity, and
@@ -49,10 +49,7 @@ fn a_control_force() {
 /// A planar linkage whose last joint, which closes the loop, is a pin, under a force that changes with each step.
 #[test]
 fn a_loop_that_a_pin_closes_is_driven() {
-    let ball = |above, below| BallOrPin::Ball(ball(above, below));
-    let pin = |above, below| {
-        BallOrPin::Pin(PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::new(0.2, 2.0, 0.0) })
-    };
+    let pin = |above, below| Joint::pin([above, below], [Vector3::y(), Vector3::new(0.2, 2.0, 0.0)]);
     let (places, corner) = row([0.9, 0.0, -0.9]);
     let tree = [
         Connection::to_space(ball(Vector3::zeros(), LEFT), 0),
@@ -146,7 +143,7 @@ fn a_load_under_a_quadrotor() {
     let (m, m_load, g, up, cable) = (1.0, 0.4, 9.81, Vector3::z(), Vector3::new(0.1, 0.05, -0.9));
     for h in [0.01, -0.005] {
         let declared = Stepper::new(SuspendedLoad { J_d, m, K, m_load, cable, g, up }, h).unwrap();
-        let joint = Connection::between(BallJoint { above: Vector3::zeros(), below: -cable }, 0, 1);
+        let joint = Connection::between(Joint::ball([Vector3::zeros(), -cable]), 0, 1);
         let two = jointed(falling([MassAndInertia { m, K: J_d }, MassAndInertia { m: m_load, K }], g, up), &[joint], h)
             .unwrap();
         let mut random = Random::new(31);

@@ -6,10 +6,10 @@ use declarations::Strut;
 use liestep::groups::{CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::{Random, derivative};
 use liestep::mechanics::SceneVisitor;
-use liestep::methods::{BallJoint, Constraint, Multibody, PinJoint, Place, Slope};
+use liestep::methods::{Constraint, Joint, Multibody, Place, Slope};
 use liestep::motion::Propagator as _;
 use liestep::{NonstandardInertia, SO3, SetupError, constraint};
-use nalgebra::{Matrix3, SVector, Vector3, Vector6};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 
 use super::super::apart;
 use super::{
@@ -50,10 +50,21 @@ fn slopes_are_derivatives_of_gaps() {
     let mut random = Random::new(5);
     for _ in 0..10 {
         let mut next = || -> Vector3<f64> { random.sample() };
-        let ball = BallJoint { above: next(), below: next() };
-        let pin = PinJoint { above: next(), below: next(), axis_above: next(), axis_below: next() };
-        check_slopes(&ball, &mut random);
-        check_slopes(&pin, &mut random);
+        let (points, axes) = ([next(), next()], [next(), next()]);
+        let relative = SO3::exp(next());
+        let all = [
+            Joint::ball(points),
+            Joint::pin(points, axes),
+            Joint::universal(points, axes),
+            Joint::cylinder(points, axes),
+            Joint::slider(points, axes[0], *relative.as_matrix()),
+            Joint::weld(points, *relative.as_matrix()),
+            Joint::plane(points, axes),
+            Joint::distance(points, 0.7),
+        ];
+        for joint in &all {
+            check_slopes(joint, &mut random);
+        }
     }
 }
 
@@ -150,7 +161,7 @@ fn declared_constraints() {
                 let (xi, position): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
                 Place { attitude: *<CayleyRetraction as Retraction<SO3>>::retract(&xi).as_matrix(), position }
             });
-            are_alike(&ball, &BallJoint { above, below }, &places);
+            are_alike(&ball, &Joint::ball([above, below]), &places);
             are_alike(&strut, &by_hand, &places);
         }
     }
@@ -193,11 +204,24 @@ fn a_sleeve_on_a_rail() {
 }
 
 /// Checks that gaps and slopes agree up to rounding.
-fn are_alike<A: Constraint<K>, B: Constraint<K>, const K: usize>(a: &A, b: &B, [above, below]: &[Place; 2]) {
-    let gaps = [a.gap(above, below), b.gap(above, below)];
+///
+/// The second may have room for more functions than the first; the others are zero.
+fn are_alike<A: Constraint<K>, B: Constraint<M>, const K: usize, const M: usize>(
+    a: &A,
+    b: &B,
+    [above, below]: &[Place; 2],
+) {
+    let padded = |row: usize, column: usize, entry: &dyn Fn(usize, usize) -> f64| {
+        if row < K { entry(row, column) } else { 0.0 }
+    };
+    let gap = a.gap(above, below);
+    let gaps = [SVector::<f64, M>::from_fn(|row, _| padded(row, 0, &|row, _| gap[row])), b.gap(above, below)];
     assert!((gaps[0] - gaps[1]).amax() < 8.0 * EPSILON * (1.0 + gaps[0].amax()), "{a:?}: {gaps:?}");
     for (a, b) in a.slope(above, below).iter().zip(&b.slope(above, below)) {
-        let off = (a.turn - b.turn).amax().max((a.shift - b.shift).amax());
+        let wide = |of: &SMatrix<f64, K, 3>| {
+            SMatrix::<f64, M, 3>::from_fn(|row, column| padded(row, column, &|row, column| of[(row, column)]))
+        };
+        let off = (wide(&a.turn) - b.turn).amax().max((wide(&a.shift) - b.shift).amax());
         assert!(off < 8.0 * EPSILON * (1.0 + a.turn.amax() + a.shift.amax()), "{a:?} {b:?}");
     }
 }
@@ -210,12 +234,8 @@ fn a_pendulum_on_a_pin() {
     // The axis is the body's z axis and space's y axis, and the body hangs along its x axis.
     let moments = Vector3::new(0.05, 0.2, 0.22);
     let K = NonstandardInertia::from_principal_moments(moments).unwrap();
-    let pin = PinJoint {
-        above: Vector3::new(0.3, -0.2, 1.0),
-        below: Vector3::x() * -reach,
-        axis_above: Vector3::y() * 2.0,
-        axis_below: Vector3::z(),
-    };
+    let pivot = Vector3::new(0.3, -0.2, 1.0);
+    let pin = Joint::pin([pivot, Vector3::x() * -reach], [Vector3::y() * 2.0, Vector3::z()]);
     let bodies = falling([MassAndInertia { m, K }], 9.81, Vector3::z());
     let stepper = jointed(bodies, &[Connection::to_space(pin, 0)], h).unwrap();
     // From hanging along −z the angle turns towards −x.
@@ -223,7 +243,7 @@ fn a_pendulum_on_a_pin() {
         let hanging = Matrix3::from_columns(&[-Vector3::z(), -Vector3::x(), Vector3::y()]);
         SO3::try_from(SO3::exp(Vector3::y() * angle).as_matrix() * hanging).unwrap()
     };
-    let centre = |attitude: &SO3| R3::from(pin.above + attitude.as_matrix() * Vector3::x() * reach);
+    let centre = |attitude: &SO3| R3::from(pivot + attitude.as_matrix() * Vector3::x() * reach);
     let (mut angle, rate) = (1.2, -0.8);
     let first = attitude(angle);
     let velocity = first.as_matrix() * (Vector3::z() * rate).cross(&(Vector3::x() * reach));
@@ -257,7 +277,7 @@ fn a_wheel_on_its_axle() {
     let K = NonstandardInertia::from_principal_moments(moments).unwrap();
     let axis = Vector3::new(0.3, -0.7, 0.2);
     for centre in [Vector3::zeros(), Vector3::new(1e6, 0.0, 0.0)] {
-        let pin = PinJoint { above: centre, below: Vector3::zeros(), axis_above: axis, axis_below: Vector3::z() };
+        let pin = Joint::pin([centre, Vector3::zeros()], [axis, Vector3::z()]);
         let bodies = falling([MassAndInertia { m: 5.0, K }], 0.0, Vector3::z());
         let stepper = jointed(bodies, &[Connection::to_space(pin, 0)], 0.01).unwrap();
         let attitude = nalgebra::Rotation3::rotation_between(&Vector3::z(), &axis).unwrap();

@@ -6,7 +6,7 @@ use checks::drift::tenths;
 use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::R3;
 use liestep::laws::samples::Random;
-use liestep::methods::{BallJoint, PinJoint};
+use liestep::methods::Joint;
 use liestep::motion::{AnyStepper, Integrator as _, Propagator};
 use liestep::{NonstandardInertia, SO3, SetupError, StepError};
 use nalgebra::{Vector3, Vector6};
@@ -14,12 +14,12 @@ use serde_json::Value;
 
 use super::super::{all, apart, order};
 use super::{
-    BallOrPin, Body, Components, Connection, EPSILON, LEFT, Linkage, MassAndInertia, RIGHT, assert_no_work, ball,
-    chained, falling, jointed, plain, rod, row, six, system, watched,
+    Body, Components, Connection, EPSILON, LEFT, Linkage, MassAndInertia, RIGHT, assert_no_work, ball, chained,
+    falling, jointed, plain, rod, row, six, system, watched,
 };
 
 /// The joints of the reference's closed loop.
-pub(super) fn loop_of_three() -> [Connection<BallJoint>; 4] {
+pub(super) fn loop_of_three() -> [Connection<Joint>; 4] {
     let data = &read("closed loop")["parameters"];
     let end = |body: usize, side: &str| plain(&data["bodies"][body][side]);
     let tree = [
@@ -232,7 +232,7 @@ fn a_singular_position_names_the_joint() {
     });
     let mut state = bent.start_nearest(&about, &still).unwrap();
     bent.run(&mut state, 10).unwrap();
-    let free = system::<BallOrPin, 2>(bodies, &[]).stepper(0.01).unwrap();
+    let free = system::<Joint, 2>(bodies, &[]).stepper(0.01).unwrap();
     let motion = free.start(&straight, &still).unwrap();
     let mut taken = stepper.adopt(&motion);
     let before = taken.clone();
@@ -260,8 +260,7 @@ fn joints_that_cannot_close_stay_open() {
 /// A planar linkage of pins alone: the last one is redundant in part.
 #[test]
 fn redundant_pins_are_named() {
-    let pin =
-        |above, below| BallOrPin::Pin(PinJoint { above, below, axis_above: Vector3::y(), axis_below: Vector3::y() });
+    let pin = |above, below| Joint::pin([above, below], [Vector3::y(); 2]);
     let (places, corner) = row([0.9, 0.0, -0.9]);
     let of = |third, last| {
         let pins = [Connection::to_space(pin(Vector3::zeros(), LEFT), 0), Connection::between(pin(RIGHT, LEFT), 0, 1)];
@@ -274,7 +273,7 @@ fn redundant_pins_are_named() {
     println!("{error}");
     assert!(matches!(error, SetupError::RedundantJoint { joint: 3, .. }));
     // A last body with balls at both ends makes it a linkage with one degree of freedom, plus that body's spin.
-    let linkage = of(BallOrPin::Ball(ball(RIGHT, LEFT)), BallOrPin::Ball(ball(corner, RIGHT)));
+    let linkage = of(ball(RIGHT, LEFT), ball(corner, RIGHT));
     let mut state = linkage.start(&places, &still).unwrap();
     let energy = linkage.energy(&state);
     let [off, gap] = watched(&linkage, &mut state, energy, 2000);
@@ -291,8 +290,8 @@ fn two_loops() {
     let bodies = falling([1.0, 1.3, 0.8, 0.6].map(rod), 9.81, Vector3::z());
     let (places, corner) = row([0.9, 0.1, -0.7]);
     // The fourth body is at right angles to the garland, from a point of the middle body that isn't its centre.
-    let knot = ball(Vector3::new(0.1, 0.0, 0.05), LEFT);
-    let start = super::place(&places[1]).of(&knot.above);
+    let at = Vector3::new(0.1, 0.0, 0.05);
+    let (knot, start) = (ball(at, LEFT), super::place(&places[1]).of(&at));
     let fourth = SO3::exp(Vector3::z() * 1.1);
     let along = fourth.as_matrix() * Vector3::x();
     let [first, second, third] = chained();

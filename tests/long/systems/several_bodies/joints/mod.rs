@@ -15,7 +15,7 @@ use declarations::{FallingBody, Strut};
 use liestep::groups::{Advected as _, CayleyRetraction, LieGroup as _, R3, Retraction};
 use liestep::laws::samples::derivative;
 use liestep::mechanics::{DiscreteLagrangian, Each, Placement};
-use liestep::methods::{BallJoint, Constraint, Multibody, MultibodyStepper, PinJoint, Place};
+use liestep::methods::{Constraint, Joint, Multibody, MultibodyStepper, Place};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, SetupError};
 use nalgebra::{DMatrix, DVector, Vector3, Vector6};
@@ -58,13 +58,6 @@ impl<C> Connection<C> {
     }
 }
 
-/// A ball joint or a pin.
-#[derive(Clone, Copy, Debug)]
-enum BallOrPin {
-    Ball(BallJoint),
-    Pin(PinJoint),
-}
-
 /// A joint that is added to a system.
 trait Joint: Copy {
     fn join(self, system: &mut Multibody, above: Option<usize>, below: usize);
@@ -88,23 +81,7 @@ macro_rules! joins {
     )+};
 }
 
-joins!(BallJoint: 3, PinJoint: 5, Strut: 1);
-
-impl Joint for BallOrPin {
-    fn join(self, system: &mut Multibody, above: Option<usize>, below: usize) {
-        match self {
-            Self::Ball(ball) => ball.join(system, above, below),
-            Self::Pin(pin) => pin.join(system, above, below),
-        }
-    }
-
-    fn gaps(&self, above: &Place, below: &Place) -> Vector6<f64> {
-        match self {
-            Self::Ball(ball) => ball.gaps(above, below),
-            Self::Pin(pin) => pin.gaps(above, below),
-        }
-    }
-}
+joins!(Joint: 6, Strut: 1);
 
 /// A stepper of falling bodies in joints, and the bodies without them.
 #[derive(Clone, Debug)]
@@ -181,12 +158,12 @@ fn rod(m: f64) -> MassAndInertia {
     MassAndInertia { m, K: NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1) * m).unwrap() }
 }
 
-fn ball(above: Vector3<f64>, below: Vector3<f64>) -> BallJoint {
-    BallJoint { above, below }
+fn ball(above: Vector3<f64>, below: Vector3<f64>) -> Joint {
+    Joint::ball([above, below])
 }
 
 /// Rods one after the other, the first from the origin.
-fn chained<const N: usize>() -> [Connection<BallJoint>; N] {
+fn chained<const N: usize>() -> [Connection<Joint>; N] {
     from_fn(|k| match k {
         0 => Connection::to_space(ball(Vector3::zeros(), LEFT), 0),
         _ => Connection::between(ball(RIGHT, LEFT), k - 1, k),

@@ -1,7 +1,7 @@
 //! Linear algebra of small matrices of numbers.
 
 /// The generators of a group have decimals, and so few products that roundings stay far below.
-pub(super) const ROUNDING: f64 = 1e-9;
+pub const ROUNDING: f64 = 1e-9;
 
 /// The reduced echelon form of these rows, and the columns of its pivots.
 fn echelon(mut rows: Vec<Vec<f64>>, columns: usize) -> (Vec<Vec<f64>>, Vec<usize>) {
@@ -24,7 +24,7 @@ fn echelon(mut rows: Vec<Vec<f64>>, columns: usize) -> (Vec<Vec<f64>>, Vec<usize
 }
 
 /// A basis of the vectors that these rows are orthogonal to.
-pub(super) fn kernel(rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
+pub fn kernel(rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
     let (rows, pivots) = echelon(rows, columns);
     let free = (0..columns).filter(|column| !pivots.contains(column));
     let of_free = |free: usize| {
@@ -39,7 +39,7 @@ pub(super) fn kernel(rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
 }
 
 /// The inverse of a matrix, row by row; `None` if it is singular.
-pub(super) fn inverse_of(size: usize, matrix: &[f64]) -> Option<Vec<f64>> {
+pub fn inverse_of(size: usize, matrix: &[f64]) -> Option<Vec<f64>> {
     let beside = |i: usize| (0..size).map(move |j| f64::from(u8::from(i == j)));
     let rows = matrix.chunks(size).enumerate().map(|(i, row)| row.iter().copied().chain(beside(i)).collect()).collect();
     let (rows, pivots) = echelon(rows, size);

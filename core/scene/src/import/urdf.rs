@@ -1,0 +1,164 @@
+//! The reader of URDF.
+
+use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
+use roxmltree::{Document, Node};
+
+use super::rigid::Distribution;
+use super::robot::{Connection, Joint, Link, Robot, Unsuitable};
+
+type Read<T> = Result<T, Unsuitable>;
+
+/// The robot of a text.
+pub(super) fn read(text: &str) -> Read<Robot> {
+    let document = Document::parse(text).map_err(|error| {
+        let at = error.pos();
+        ((at.row as usize, at.col as usize), format!("isn't XML: {error}"))
+    })?;
+    let root = document.root_element();
+    let mut robot = Robot { name: root.attribute("name").unwrap_or("robot").to_owned(), ..Robot::default() };
+    if root.tag_name().name() != "robot" {
+        let found = root.tag_name().name();
+        return Err((place(&root), format!("a model of URDF is an element `robot`, and this is `{found}`")));
+    }
+    for element in root.children().filter(Node::is_element) {
+        match element.tag_name().name() {
+            "link" => robot.links.push(link(&element, &mut robot.remarks)?),
+            "joint" => robot.joints.push(joint(&element, &mut robot.remarks)?),
+            "material" => (),
+            other => {
+                let name = element.attribute("name").or(element.attribute("reference")).unwrap_or("");
+                robot.remarks.push(format!("`{other}` {name}: no counterpart"));
+            }
+        }
+    }
+    Ok(robot)
+}
+
+/// Line and column, from one.
+fn place(node: &Node<'_, '_>) -> (usize, usize) {
+    let at = node.document().text_pos_at(node.range().start);
+    (at.row as usize, at.col as usize)
+}
+
+fn child<'a, 'd>(node: &Node<'a, 'd>, name: &str) -> Option<Node<'a, 'd>> {
+    node.children().find(|child| child.has_tag_name(name))
+}
+
+fn name(node: &Node<'_, '_>) -> Read<String> {
+    let missing = || (place(node), format!("`{}` has no `name`", node.tag_name().name()));
+    node.attribute("name").map(str::to_owned).ok_or_else(missing)
+}
+
+fn finite(node: &Node<'_, '_>, text: &str) -> Read<f64> {
+    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| (place(node), format!("`{text}` isn't a finite number")))
+}
+
+/// The number of an attribute.
+fn number(node: &Node<'_, '_>, attribute: &str) -> Read<Option<f64>> {
+    node.attribute(attribute).map(|text| finite(node, text)).transpose()
+}
+
+/// Three numbers of an attribute.
+fn triple(node: &Node<'_, '_>, attribute: &str) -> Read<Option<Vector3<f64>>> {
+    let Some(text) = node.attribute(attribute) else { return Ok(None) };
+    let numbers = text.split_whitespace().map(|text| finite(node, text)).collect::<Read<Vec<_>>>()?;
+    match numbers.as_slice() {
+        &[x, y, z] => Ok(Some(Vector3::new(x, y, z))),
+        other => Err((place(node), format!("`{attribute}` has three numbers, found {}", other.len()))),
+    }
+}
+
+/// The frame of an element `origin`; the identity without one.
+fn origin(node: &Node<'_, '_>) -> Read<Isometry3<f64>> {
+    let Some(origin) = child(node, "origin") else { return Ok(Isometry3::identity()) };
+    let shift = triple(&origin, "xyz")?.unwrap_or_default();
+    let turn = triple(&origin, "rpy")?.unwrap_or_default();
+    let turn = UnitQuaternion::from_euler_angles(turn.x, turn.y, turn.z);
+    Ok(Isometry3::from_parts(Translation3::from(shift), turn))
+}
+
+fn link(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Link> {
+    let name = name(node)?;
+    for shape in ["visual", "collision"] {
+        let count = node.children().filter(|child| child.has_tag_name(shape)).count();
+        if count > 0 {
+            remarks.push(format!("link {name}: `{shape}` is a shape, and shapes aren't read"));
+        }
+    }
+    for other in node.children().filter(Node::is_element) {
+        let tag = other.tag_name().name();
+        if !["visual", "collision", "inertial"].contains(&tag) {
+            remarks.push(format!("link {name}: `{tag}`: no counterpart"));
+        }
+    }
+    let mut mass = Distribution::NOTHING;
+    if let Some(inertial) = child(node, "inertial") {
+        let kg = child(&inertial, "mass").map(|node| number(&node, "value")).transpose()?.flatten();
+        let kg = kg.ok_or_else(|| (place(&inertial), "`inertial` has no `mass` with a `value`".to_owned()))?;
+        if kg < 0.0 {
+            return Err((place(&inertial), format!("the mass {kg} is negative")));
+        }
+        let mut J = Matrix3::zeros();
+        if let Some(inertia) = child(&inertial, "inertia") {
+            for (row, column, attribute) in
+                [(0, 0, "ixx"), (0, 1, "ixy"), (0, 2, "ixz"), (1, 1, "iyy"), (1, 2, "iyz"), (2, 2, "izz")]
+            {
+                let entry = number(&inertia, attribute)?.unwrap_or(0.0);
+                (J[(row, column)], J[(column, row)]) = (entry, entry);
+            }
+        }
+        mass = Distribution { mass: kg, centre: Vector3::zeros(), inertia: J }.seen(&origin(&inertial)?);
+    }
+    Ok(Link { name, place: place(node), mass })
+}
+
+/// An axis, with the coordinate axis without rounding where it is one.
+fn axis(node: &Node<'_, '_>) -> Read<Vector3<f64>> {
+    let Some(axis) = child(node, "axis") else { return Ok(Vector3::x()) };
+    let given = triple(&axis, "xyz")?.unwrap_or_else(Vector3::x);
+    let scaled = given / given.amax();
+    let unit = scaled.try_normalize(0.5).filter(|unit| unit.iter().all(|part| part.is_finite()));
+    unit.ok_or_else(|| (place(&axis), "an axis can't be zero".to_owned()))
+}
+
+fn joint(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Joint> {
+    let name = name(node)?;
+    let end = |tag: &str| {
+        let link = child(node, tag).and_then(|end| end.attribute("link").map(str::to_owned));
+        link.ok_or_else(|| (place(node), format!("the joint `{name}` has no `{tag}` with a `link`")))
+    };
+    let (parent, child_link) = (end("parent")?, end("child")?);
+    let connection = match node.attribute("type") {
+        Some("fixed") => Connection::Fixed,
+        Some("revolute" | "continuous") => Connection::Pin(axis(node)?),
+        Some("prismatic") => Connection::Slider(axis(node)?),
+        Some("planar") => Connection::Plane(axis(node)?),
+        Some("spherical") => Connection::Ball,
+        Some("floating") => Connection::Free,
+        other => {
+            let found = other.map_or("no `type`".to_owned(), |other| format!("the type `{other}`"));
+            let known = "`fixed`, `revolute`, `continuous`, `prismatic`, `planar`, `spherical`, `floating`";
+            return Err((place(node), format!("the joint `{name}` has {found}, expected one of {known}")));
+        }
+    };
+    let (mut damping, mut friction) = (0.0, 0.0);
+    for other in node.children().filter(Node::is_element) {
+        match other.tag_name().name() {
+            "parent" | "child" | "origin" | "axis" => (),
+            "dynamics" => {
+                damping = number(&other, "damping")?.unwrap_or(0.0);
+                friction = number(&other, "friction")?.unwrap_or(0.0);
+            }
+            "limit" if node.attribute("type") == Some("continuous") => (),
+            "limit" => remarks.push(format!("joint {name}: its limits aren't imposed")),
+            "mimic" => {
+                let follows = other.attribute("joint").unwrap_or("another");
+                remarks.push(format!("joint {name}: it moves by itself, and doesn't follow {follows}"));
+            }
+            tag => remarks.push(format!("joint {name}: `{tag}`: no counterpart")),
+        }
+    }
+    let origin = origin(node)?;
+    Ok(Joint { name, place: place(node), parent, child: child_link, origin, connection, damping, friction })
+}
