@@ -43,7 +43,7 @@ fn python() {
         println!("skipped: {python} has no package liestep (core/python/run --install builds and tests it)");
         return;
     }
-    // With SciPy an attitude is one of its rotations, else a matrix.
+    // Attitudes are rotations of SciPy where it is installed, else matrices.
     let tip = "turns = run.attitude\nprint(*getattr(turns, 'as_matrix', lambda: turns)()[-1][:, 2])";
     let program = listing("python", "import liestep").replace("run.plot()", tip);
     let output = Command::new(&python).args(["-c", &program]).output().unwrap();

@@ -137,17 +137,17 @@ pub fn jacobians<T>(run: impl FnOnce() -> T) -> (T, u32) {
 
 /// A Lagrangian whose momentum equation is solved for another body: its roots have errors of some thousandths.
 #[derive(Clone, Debug)]
-pub struct Badly<L>(pub L);
+pub struct InaccurateSolver<L>(pub L);
 
-impl<L: DiscreteLagrangian> DiscreteLagrangian for Badly<L> {
+impl<L: DiscreteLagrangian> DiscreteLagrangian for InaccurateSolver<L> {
     declared_as!(L);
 }
 
-impl<L: Term> Term for Badly<L> {
+impl<L: Term> Term for InaccurateSolver<L> {
     term_as!(L);
 }
 
-impl<L: Effect> Effect for Badly<L> {
+impl<L: Effect> Effect for InaccurateSolver<L> {
     solved_as!(L);
 
     fn newton_system(

@@ -75,14 +75,14 @@ quartic!(
     discretise = trapezoid,
 )]
 #[derive(Clone, Debug)]
-struct Ambient {
+struct QuarticBody {
     J: Inertia,
     k: f64,
     r: Vector3<f64>,
     covector: Vector3<f64>,
 }
 
-impl Ambient {
+impl QuarticBody {
     fn new() -> Self {
         let J = Inertia::from_principal_moments(Vector3::new(0.4, 0.6, 0.9)).unwrap();
         Self { J, k: 0.1, r: Vector3::new(0.1, -0.2, 0.9), covector: Vector3::new(0.3, -0.8, 0.5) }
@@ -157,7 +157,7 @@ where
         - 0.5 * h * k * w.dot(&(r + F * r)),
 )]
 #[derive(Clone, Debug)]
-struct Relativistic {
+struct RelativisticBody {
     J_d: NonstandardInertia,
     k: f64,
     r: Vector3<f64>,
@@ -168,7 +168,7 @@ struct Relativistic {
 #[test]
 fn of_any_degree_as_typed() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(0.1, 0.12, 0.08)).unwrap();
-    let top = Relativistic { J_d, k: 0.2, r: Vector3::new(0.1, -0.2, 0.9), covector: Vector3::new(0.3, -0.8, 0.5) };
+    let top = RelativisticBody { J_d, k: 0.2, r: Vector3::new(0.1, -0.2, 0.9), covector: Vector3::new(0.3, -0.8, 0.5) };
     let J = *top.J_d.to_inertia().as_matrix();
     let (xi, w) = (Vector3::new(0.9, -0.7, 0.8), top.covector);
     let root = (1.0 - xi.dot(&(J * xi))).sqrt();
@@ -215,8 +215,8 @@ fn quartic<T: RealField + Copy, const N: usize>(
 
 #[test]
 fn on_so3() {
-    type Long = OnSo3<HyperDual64>;
-    let Long { J, k, r, .. } = Long::new();
+    type LongNumbers = OnSo3<HyperDual64>;
+    let LongNumbers { J, k, r, .. } = LongNumbers::new();
     let of_matrix = quartic((J, k, r));
     let l = |_: HyperDual64, xi: &Vector3<_>, w: &Vector3<_>| of_matrix(&xi.cross_matrix(), w);
     let any = Matrix3::identity();
@@ -236,7 +236,7 @@ fn on_so3() {
 #[test]
 fn on_so3_in_the_ambient_matrix() {
     let (body, gravity) =
-        (Ambient::new(), Gravity { m: 1.1, g: 9.81, rho: Vector3::new(0.1, -0.2, 1.0), up: Vector3::z() });
+        (QuarticBody::new(), Gravity { m: 1.1, g: 9.81, rho: Vector3::new(0.1, -0.2, 1.0), up: Vector3::z() });
     let (J, k) = (body.J.as_matrix(), HyperDual64::from(body.k));
     let [r, rho] = [body.r, gravity.rho].map(|vector| vector.map(HyperDual64::from));
     let alone = |f: &_, w: &Vector3<HyperDual64>, h| {
@@ -319,10 +319,10 @@ fn on_affine_maps() {
 /// Methods that contain the motion of one free body require a constant inertia.
 #[test]
 fn methods_for_a_quadratic_kinetic_energy_refuse_another() {
-    let body = ExactBody::new(&Ambient::new().J);
-    let split = Stepper::split(Ambient::new(), 0.1, body, SplittingScheme::STRANG);
+    let body = ExactBody::new(&QuarticBody::new().J);
+    let split = Stepper::split(QuarticBody::new(), 0.1, body, SplittingScheme::STRANG);
     assert!(matches!(split, Err(SetupError::VaryingInertia)));
-    assert!(matches!(Stepper::collocated::<2>(Ambient::new(), 0.1), Err(SetupError::VaryingInertia)));
+    assert!(matches!(Stepper::collocated::<2>(QuarticBody::new(), 0.1), Err(SetupError::VaryingInertia)));
 }
 
 /// A relativistic particle, whose momenta are those of velocities below that of light.
@@ -334,7 +334,7 @@ fn methods_for_a_quadratic_kinetic_energy_refuse_another() {
     discretise = trapezoid(exp),
 )]
 #[derive(Clone, Debug)]
-struct Fast {
+struct ParticleInField {
     m: f64,
     c: f64,
     q: f64,
@@ -347,7 +347,7 @@ struct Fast {
 fn a_fast_particle() {
     let (m, c, q, h) = (2.0, 3.0, 0.5, 0.1);
     let field = Vector4::new(0.4, -1.0, 0.2, 0.0);
-    let stepper = Stepper::new(Fast { m, c, q, origin: Vector4::w(), field }, h).unwrap();
+    let stepper = Stepper::new(ParticleInField { m, c, q, origin: Vector4::w(), field }, h).unwrap();
     let mut state = stepper.start(R3::identity(), Vector3::new(0.3, 0.1, -2.8)).unwrap();
     let (mut momentum, mut place) = (state.momentum(), Vector3::zeros());
     assert!(momentum.norm() > 2.0 * m * 2.8, "{momentum}");

@@ -38,13 +38,13 @@ fn start<T: Real>(top: Top<T>, h: f64, attitude: SO3<T>, velocity: Vector3<T>) -
     (stepper, state)
 }
 
-fn together<T: Wide>(lanes: &[Lane<T::Element>], h: f64) -> TopRun<T> {
+fn together<T: LaneScalar>(lanes: &[Lane<T::Element>], h: f64) -> TopRun<T> {
     let top = Top::gathered(&of_each(lanes, |lane| lane.top)).unwrap();
     let attitude = SO3::gathered(&of_each(lanes, |lane| lane.attitude)).unwrap();
     start(top, h, attitude, Vector3::gathered(&of_each(lanes, |lane| lane.velocity)).unwrap())
 }
 
-fn alone<T: Wide>(lanes: &[Lane<T::Element>], h: f64) -> Vec<TopRun<T::Element>> {
+fn alone<T: LaneScalar>(lanes: &[Lane<T::Element>], h: f64) -> Vec<TopRun<T::Element>> {
     of_each(lanes, |lane| start(lane.top, h, lane.attitude, lane.velocity))
 }
 
@@ -53,12 +53,12 @@ fn of_each<L, V>(lanes: &[L], value: impl Fn(&L) -> V) -> Vec<V> {
 }
 
 /// The scalar of several lanes.
-trait Wide: Real<Element: Real + RealField> {}
+trait LaneScalar: Real<Element: Real + RealField> {}
 
-impl<T: Real<Element: Real + RealField>> Wide for T {}
+impl<T: Real<Element: Real + RealField>> LaneScalar for T {}
 
 /// Compares each lane with a scalar run after every step; returns how often the lanes' iteration counts differed.
-fn assert_independent<T: Wide>(lanes: &[Lane<T::Element>], h: f64, steps: u32) -> u32 {
+fn assert_independent<T: LaneScalar>(lanes: &[Lane<T::Element>], h: f64, steps: u32) -> u32 {
     let (stepper, mut state) = together::<T>(lanes, h);
     let mut singles = alone::<T>(lanes, h);
     let mut unequal = 0;
@@ -338,14 +338,14 @@ fn bodies_that_are_unlike_are_refused_by_their_lane() {
     l_d = -(2.0 * k / h) * ((1.0 + F.trace()) / 4.0).ln()
         - 0.5 * h * ((w - rho).norm() + (F * rho - w).norm() + k * w.dot(&(F * rho)).sin()),
 )]
-struct Smooth<T: Real> {
+struct LogarithmicTerm<T: Real> {
     k: T,
     rho: Vector3<T>,
     up: Vector3<T>,
 }
 
 fn smooth<T: Real>(k: T, rho: Vector3<T>, velocity: Vector3<T>) -> (Matrix3<T>, Vector3<T>) {
-    let stepper = Stepper::new(Smooth { k, rho, up: Vector3::z() }, nalgebra::convert(0.01)).unwrap();
+    let stepper = Stepper::new(LogarithmicTerm { k, rho, up: Vector3::z() }, nalgebra::convert(0.01)).unwrap();
     let mut state = stepper.start(SO3::identity(), velocity).unwrap();
     for _ in 0..100 {
         stepper.step(&mut state).unwrap();

@@ -49,7 +49,7 @@ struct FreeBody<T: Real> {
             - 0.3 * h * (tip.cross_matrix() * A * b).dot(&w) + k * (w.dot(&tip) - w.dot(&rho))
     },
 )]
-struct Everything<T: Real> {
+struct AllTerms<T: Real> {
     J: Inertia<T>,
     A: Matrix3<T>,
     k: T,
@@ -68,7 +68,7 @@ struct Everything<T: Real> {
         - h / (3.0 + (F * rho).dot(&w).powi(2)) + h * (w.dot(&(F.transpose() * rho))).cos()
         + h * k * (exp(w)[(0, 2)] + exp(w.cross(&(F * rho)) * k)[(1, 2)]),
 )]
-struct Smooth<T: Real> {
+struct LogarithmicTerm<T: Real> {
     k: T,
     rho: Vector3<T>,
     up: Vector3<T>,
@@ -103,16 +103,16 @@ fn free_body<T: RealField + Copy>(seed: u64) -> FreeBody<T> {
     FreeBody { J_d: tensor(&mut Random::new(seed)) }
 }
 
-fn everything<T: RealField + Copy>(seed: u64) -> Everything<T> {
+fn everything<T: RealField + Copy>(seed: u64) -> AllTerms<T> {
     let mut r = Random::new(seed);
     let J = tensor(&mut r).to_inertia();
     let A = r.matrix().map(convert);
-    Everything { J, A, k: real(0.8), rho: vector(&mut r), up: vector(&mut r), field: vector(&mut r) }
+    AllTerms { J, A, k: real(0.8), rho: vector(&mut r), up: vector(&mut r), field: vector(&mut r) }
 }
 
-fn smooth<T: RealField + Copy>(seed: u64) -> Smooth<T> {
+fn smooth<T: RealField + Copy>(seed: u64) -> LogarithmicTerm<T> {
     let mut r = Random::new(seed);
-    Smooth { k: real(1.7), rho: vector(&mut r), up: vector(&mut r) }
+    LogarithmicTerm { k: real(1.7), rho: vector(&mut r), up: vector(&mut r) }
 }
 
 /// Checks all derived terms and the stages; cancelling traces in `l_d` are `cancelling` over `h`.

@@ -29,7 +29,7 @@ struct EndPotential {
 /// A potential `½ m (w·ρ)²` of the middle of a step: an unknown part without a kinetic one.
 #[lagrangian(group = SO3, advected(w = up), l_d = -0.125 * h * m * w.dot(&(rho + F * rho)).powi(2))]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Middle {
+struct MidpointPotential {
     m: f64,
     rho: Vector3<f64>,
     up: Vector3<f64>,
@@ -83,7 +83,7 @@ struct Push {
     },
 )]
 #[derive(Clone, Copy, Debug)]
-struct Whole {
+struct TwoBodies {
     J_d: NonstandardInertia,
     J: Inertia,
     k_1: f64,
@@ -140,8 +140,8 @@ fn leaning(r: &mut Random) -> EndPotential {
     EndPotential { m: switched(r), rho: r.vector(), up: r.direction() }
 }
 
-fn middle(r: &mut Random) -> Middle {
-    Middle { m: switched(r), rho: r.vector(), up: r.direction() }
+fn middle(r: &mut Random) -> MidpointPotential {
+    MidpointPotential { m: switched(r), rho: r.vector(), up: r.direction() }
 }
 
 fn push(r: &mut Random) -> Push {
@@ -199,7 +199,7 @@ fn terms_at_bodies_add_in_all_orders() {
             attitude; Bodies([first, second])
         ))
         .to_vec();
-        let whole = Whole {
+        let whole = TwoBodies {
             J_d: J_1,
             J: J_2,
             k_1,

@@ -130,7 +130,7 @@ fn a_step_has_the_momenta_of_all_terms() {
     l_d = -0.5 * h * k * (3.0 - 0.5 * (Q.trace() + (F_1.transpose() * Q * F_2).trace())).powi(2),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Stiff {
+struct SquaredPotential {
     k: f64,
 }
 
@@ -139,7 +139,7 @@ struct Stiff {
 fn bodies_with_cleared_denominators_are_coupled() {
     const { assert!(RigidBody::<f64>::DENOMINATORS == 1 && GeodesicBody::<f64>::DENOMINATORS == 0) };
     let (body, J) = (rigid([3.0, 2.5, 2.0]), inertia([1.1, 0.9, 0.5]));
-    let coupling = Coupling::<3>::of([Stiff { k: 20.0 }]);
+    let coupling = Coupling::<3>::of([SquaredPotential { k: 20.0 }]);
     let ends = On::<0, 3>::of([body]) + On::<2, 3>::of([body]);
     assert_step(&(ends + coupling + On::<1, 3>::of([GeodesicBody { J }])), &[1e-3, 0.1], 7);
     assert_step(&(coupling + Each::<3>::of([body])), &[1e-3, 0.1], 8);
@@ -165,7 +165,7 @@ fn bodies_that_are_read_late_add_as_those_that_are_compiled() {
         end(quartic + Each::<2>::of([late(&body), late(&GeodesicBody { J })])),
     ];
     assert!(norm(&(compiled - read)) < 1e-13, "{compiled:?} {read:?}");
-    let coupling = Coupling::<2>::of([Stiff { k: 20.0 }]);
+    let coupling = Coupling::<2>::of([SquaredPotential { k: 20.0 }]);
     let [compiled, read] = [end(Each::<2>::of([body]) + coupling), end(Each::<2>::of([late(&body)]) + coupling)];
     assert!(norm(&(compiled - read)) < 1e-13, "{compiled:?} {read:?}");
 }

@@ -46,7 +46,7 @@ struct Ball {
     },
 )]
 #[derive(Clone, Copy, Debug)]
-struct Everything {
+struct AllTerms {
     J_d: NonstandardInertia,
     k_4: f64,
     k_b: f64,
@@ -67,7 +67,7 @@ struct Everything {
     anchor: Vector3<f64>,
 }
 
-impl Everything {
+impl AllTerms {
     fn random(r: &mut Random) -> Self {
         let axes = *r.rotation().as_matrix();
         let inertia = nalgebra::Matrix3::from_diagonal(&Vector3::new(1.0, 1.5, 0.7));
@@ -136,7 +136,7 @@ fn derivations_add() {
     fn derivation<E: Effect>(effect: &E) -> String {
         effect.derivation()
     }
-    let (body, _, _, rotor, gravity, ..) = Everything::random(&mut Random::new(2)).terms();
+    let (body, _, _, rotor, gravity, ..) = AllTerms::random(&mut Random::new(2)).terms();
     let alone = [derivation(&body), derivation(&gravity), derivation(&rotor)];
     assert_eq!(alone, [RigidBody::<f64>::DERIVATION, Gravity::<f64>::DERIVATION, Rotor::<f64>::DERIVATION]);
     assert_eq!(derivation(&(body + gravity + rotor)), alone.join("\n"));
@@ -147,7 +147,7 @@ fn derivations_add() {
 fn derived_terms_add() {
     let mut r = Random::new(1);
     for _ in 0..20 {
-        let one = Everything::random(&mut r);
+        let one = AllTerms::random(&mut r);
         let (body, quartic, ball, rotor, gravity, gradient, dipole, spring) = one.terms();
         let sum = body + quartic + ball + rotor + gravity + gradient + dipole + spring;
         let (f, h) = (r.rotation_by(0.4).matrix(), 0.1);
@@ -179,7 +179,7 @@ fn newton_systems_of_three_scales_add() {
     assert_eq!([Ball::DENOMINATORS, RigidBody::<f64>::DENOMINATORS, Quartic::DENOMINATORS], [0, 1, 2]);
     let mut r = Random::new(3);
     for seed in 0..5 {
-        let (body, quartic, ball, rotor, gravity, ..) = Everything::random(&mut r).terms();
+        let (body, quartic, ball, rotor, gravity, ..) = AllTerms::random(&mut r).terms();
         assert_stages(&(body + rotor), seed);
         assert_stages(&(ball + gravity + body), seed);
         assert_stages(&(ball + quartic), seed);
@@ -192,7 +192,7 @@ fn newton_systems_of_three_scales_add() {
 fn the_order_of_terms_only_rounds_differently() {
     let mut r = Random::new(2);
     for _ in 0..5 {
-        let everything = Everything::random(&mut r);
+        let everything = AllTerms::random(&mut r);
         let (body, quartic, ball, rotor, gravity, gradient, dipole, spring) = everything.terms();
         let one = moved(everything, 0.02, 200);
         let distances = [

@@ -8,7 +8,7 @@ use std::panic::catch_unwind;
 
 /// The group SE(2) with one defect.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Broken<const WHAT: usize>(SE2);
+struct DefectiveGroup<const WHAT: usize>(SE2);
 
 const PRODUCT: usize = 0;
 const INVERSE: usize = 1;
@@ -32,7 +32,7 @@ fn turned<const WHAT: usize>(v: Vector3<f64>, what: usize) -> Vector3<f64> {
     if WHAT == what { Vector3::new(v.x, v.y, -v.z) } else { v }
 }
 
-impl<const WHAT: usize> LieGroup for Broken<WHAT> {
+impl<const WHAT: usize> LieGroup for DefectiveGroup<WHAT> {
     type Scalar = f64;
     type Vector = Vector3<f64>;
     type Matrix = Matrix3<f64>;
@@ -125,7 +125,7 @@ impl<const WHAT: usize> LieGroup for Broken<WHAT> {
 
 /// The laws of groups refuse each defect.
 fn refused<const WHAT: usize>() -> Vec<&'static str> {
-    type G<const WHAT: usize> = Broken<WHAT>;
+    type G<const WHAT: usize> = DefectiveGroup<WHAT>;
     let laws: [(&str, fn()); 10] = [
         ("group_axioms", group::group_axioms::<G<WHAT>, _, _>),
         ("hat_and_vee", group::hat_and_vee::<G<WHAT>, _, _>),
@@ -168,7 +168,7 @@ fn laws_of_groups() {
 }
 
 /// A retraction of SE(2) with one defect.
-struct Wrong<const WHAT: usize>;
+struct DefectiveRetraction<const WHAT: usize>;
 
 const HALF: usize = 0;
 const OFF_THE_GROUP: usize = 1;
@@ -177,7 +177,7 @@ const LEFT_TANGENT: usize = 3;
 const SUBTRACTED: usize = 4;
 const RIGHT: usize = 5;
 
-impl<const WHAT: usize> Retraction<SE2> for Wrong<WHAT> {
+impl<const WHAT: usize> Retraction<SE2> for DefectiveRetraction<WHAT> {
     fn increment(xi: &Vector3<f64>) -> Matrix3<f64> {
         match WHAT {
             HALF => <CayleyRetraction as Retraction<SE2>>::increment(&(xi * 0.5)),
@@ -206,7 +206,7 @@ impl<const WHAT: usize> Retraction<SE2> for Wrong<WHAT> {
 }
 
 fn refused_retraction<const WHAT: usize>() -> Vec<&'static str> {
-    type R<const WHAT: usize> = Wrong<WHAT>;
+    type R<const WHAT: usize> = DefectiveRetraction<WHAT>;
     let laws: [(&str, fn()); 5] = [
         ("at_zero", retraction::retraction_at_zero::<SE2, R<WHAT>, _, _>),
         ("stays", retraction::retraction_stays_in_the_group::<SE2, R<WHAT>, _, _>),
@@ -231,9 +231,9 @@ fn laws_of_retractions() {
 /// A vector that is advected by `F w` in place of the covector's `Fᵀ w` or the vector's `F⁻¹ w`: an action from the
 /// wrong side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Backwards(Vector3<f64>);
+struct WrongSideVector(Vector3<f64>);
 
-impl Advected<SE2> for Backwards {
+impl Advected<SE2> for WrongSideVector {
     fn seen_from(&self, attitude: &SE2) -> Self {
         Self(attitude.matrix() * self.0)
     }
@@ -255,7 +255,7 @@ impl Advected<SE2> for Backwards {
     }
 }
 
-impl Entries<f64> for Backwards {
+impl Entries<f64> for WrongSideVector {
     fn from_entries(next: &mut impl FnMut() -> f64) -> Self {
         Self(Entries::from_entries(next))
     }
@@ -322,8 +322,8 @@ fn laws_of_advected_parameters() {
     advected::parameter_is_acted_on::<SE2, Covector<RIGHT_COVECTOR>, _, _>();
     assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, Covector<TURNED_RATE>, _, _>).is_err());
     assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, Covector<UNTRANSPOSED>, _, _>).is_err());
-    assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, Backwards, _, _>).is_err());
+    assert!(catch_unwind(advected::parameter_is_acted_on::<SE2, WrongSideVector, _, _>).is_err());
     // A wrong inverse makes the contravariant kinds wrong; the group's own laws alone would blame `inverse`.
-    assert!(catch_unwind(advected::kinds_move_as_declared::<Broken<INVERSE>, _, _>).is_err());
-    assert!(catch_unwind(advected::kinds_act::<Broken<PRODUCT>, _, _>).is_err());
+    assert!(catch_unwind(advected::kinds_move_as_declared::<DefectiveGroup<INVERSE>, _, _>).is_err());
+    assert!(catch_unwind(advected::kinds_act::<DefectiveGroup<PRODUCT>, _, _>).is_err());
 }

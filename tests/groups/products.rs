@@ -124,9 +124,9 @@ impl LieGroup for BlockMatrix {
 }
 
 /// The product's own Cayley map.
-struct ByFactors;
+struct ProductCayley;
 
-impl Retraction<BlockMatrix> for ByFactors {
+impl Retraction<BlockMatrix> for ProductCayley {
     fn increment(xi: &Vector6<f64>) -> Matrix6<f64> {
         matrix(&<CayleyRetraction as Retraction<Product>>::increment(xi))
     }
@@ -149,7 +149,7 @@ mod group {
 }
 
 mod retraction {
-    liestep::retraction_laws!(super::BlockMatrix, super::ByFactors);
+    liestep::retraction_laws!(super::BlockMatrix, super::ProductCayley);
 }
 
 /// Each body is tested separately for nearness to the identity.

@@ -15,20 +15,20 @@ use num_dual::{Dual64, HyperHyperDual64};
 use super::dual::{STEP, assert_linearised};
 use super::scenes::{MOMENTS, Numbers, SpringTop, exact_flow, gravity, heavy, held, unit};
 
-type Several<T> = Sum<SpringTop<T>, Dipole<T>>;
+type SpringAndDipole<T> = Sum<SpringTop<T>, Dipole<T>>;
 
 /// The parameters of the scene below; those of the body are the first nine.
 const PARAMETERS: usize = 45;
 
 /// Potentials that are linear in the advected parameters, quadratic, and a root.
-fn several<T: RealField + Copy>(varied: Option<(usize, T)>) -> Several<T> {
+fn several<T: RealField + Copy>(varied: Option<(usize, T)>) -> SpringAndDipole<T> {
     let mut n = Numbers::new(varied);
     let held = held(&mut n);
     let dipole = Dipole { moment: n.vector(0.7, -0.4, 0.2), field: n.vector(0.3, 0.9, -0.5) };
     held + dipole
 }
 
-fn body<T: RealField + Copy>(scene: Several<T>) -> RigidBody<T> {
+fn body<T: RealField + Copy>(scene: SpringAndDipole<T>) -> RigidBody<T> {
     scene.first.first.first.first
 }
 
@@ -74,7 +74,7 @@ fn the_gradient_of_a_kick() {
         let (by_place, by_seen) = found.expect("it is derived");
         let mut by_carried = Vec::new();
         Advected::<SO3>::pulled_back(&by_seen, &attitude).each(&mut |entry| by_carried.push(entry));
-        Several::<f64>::carried_parameters(&mut |place, number| by_parameters[number] += by_carried[place]);
+        SpringAndDipole::<f64>::carried_parameters(&mut |place, number| by_parameters[number] += by_carried[place]);
         let at = attitude.matrix();
         let place = |k: usize| by_dual_numbers(&at, [&u, &v, &r], &Matrix3::identity().column(k).into(), None);
         let parameter = |number| by_dual_numbers(&at, [&u, &v, &r], &Vector3::zeros(), Some(number));
@@ -131,17 +131,17 @@ fn a_processed_splitting() {
     },
 )]
 #[derive(Clone)]
-struct Bent {
+struct FourthOrderTerm {
     J: Inertia,
 }
 
-const OF_BENT: Vector3<f64> = Vector3::new(2.5, 3.0, 3.5);
+const MOMENTS_OF_TERM: Vector3<f64> = Vector3::new(2.5, 3.0, 3.5);
 
 /// The term contributes only its inertia to a kick: `−⟨r, J u⟩`.
 #[test]
 fn the_kick_of_a_closed_kinetic_term() {
-    let J = Inertia::from_principal_moments(OF_BENT).expect("a body");
-    let (body, mut random) = (Bent { J }, Random::new(1));
+    let J = Inertia::from_principal_moments(MOMENTS_OF_TERM).expect("a body");
+    let (body, mut random) = (FourthOrderTerm { J }, Random::new(1));
     let [u, v, r]: [Vector3<f64>; 3] = [random.sample(), random.sample(), random.sample()];
     let mut by_inertia = [0.0; 9];
     let (by_place, ()) =
@@ -160,10 +160,10 @@ fn the_kick_of_a_closed_kinetic_term() {
 /// A splitting takes only the potential and the inertia from the scene, so the form of the kinetic term doesn't matter.
 #[test]
 fn a_splitting_of_a_closed_kinetic_term() {
-    let J = Inertia::from_principal_moments(OF_BENT).expect("a body");
-    let J_d = DiagonalNonstandardInertia::from_principal_moments(OF_BENT).expect("a body");
+    let J = Inertia::from_principal_moments(MOMENTS_OF_TERM).expect("a body");
+    let J_d = DiagonalNonstandardInertia::from_principal_moments(MOMENTS_OF_TERM).expect("a body");
     let gravity = gravity(&mut Numbers::<f64>::new(None));
-    let found = transition(Bent { J } + gravity);
+    let found = transition(FourthOrderTerm { J } + gravity);
     let expected = transition(PrincipalBody { J_d } + gravity);
     for (found, expected) in found.as_flattened().iter().zip(expected.as_flattened()) {
         assert!((found - expected).amax() < 1e-13 * expected.amax(), "{found} is not {expected}");
@@ -174,7 +174,7 @@ fn transition<S>(scene: S) -> [[Matrix3<f64>; 2]; 2]
 where
     S: DiscreteLagrangian<Scalar = f64, Group = SO3> + SecondDerivatives + Regular,
 {
-    let flow = ExactBody::new(&Inertia::from_principal_moments(OF_BENT).expect("a body"));
+    let flow = ExactBody::new(&Inertia::from_principal_moments(MOMENTS_OF_TERM).expect("a body"));
     let stepper = Stepper::split(scene, 0.1, flow, SplittingScheme::FORCE_GRADIENT_4).expect("a stepper");
     let linear = stepper.linearised().expect("derivatives");
     let mut state = stepper.start_with_momentum(SO3::identity(), Vector3::new(0.5, 2.0, 3.0)).expect("a start");

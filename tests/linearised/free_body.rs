@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use super::scenes::{MOMENTS, exact_flow, heavy};
 
-type Free = Stepper<Sum<RigidBody, Gravity>, Splitting<Sum<RigidBody, Gravity>, ExactBody>>;
+type FreeBody = Stepper<Sum<RigidBody, Gravity>, Splitting<Sum<RigidBody, Gravity>, ExactBody>>;
 
 /// The limit above which the library doubles the closed form; below it uses polynomials or up to two doublings of a
 /// curve.
@@ -28,7 +28,7 @@ fn size([of_a, of_b, of_c]: [f64; 3], along: &Vector3<f64>, time: f64) -> f64 {
 const BOUND: f64 = 1e-11;
 
 /// A stepper whose whole step is one drift of this length.
-fn free(moments: [f64; 3], axes: &Matrix3<f64>, time: f64) -> Free {
+fn free(moments: [f64; 3], axes: &Matrix3<f64>, time: f64) -> FreeBody {
     Stepper::split(heavy(moments, axes, 0.0, None), time, exact_flow(moments, axes, None), SplittingScheme::STRANG)
         .expect("a stepper")
 }

@@ -199,9 +199,9 @@ fn an_event_may_end_the_run() {
 }
 
 /// An integrator that implements only the required methods.
-struct Bare<'a, I>(&'a I);
+struct MinimalIntegrator<'a, I>(&'a I);
 
-impl<I: Integrator> Integrator for Bare<'_, I> {
+impl<I: Integrator> Integrator for MinimalIntegrator<'_, I> {
     type Scalar = I::Scalar;
     type Motion = I::Motion;
     type Velocity = I::Velocity;
@@ -282,11 +282,21 @@ fn runs_are_shown_alike_whatever_steps() {
         let any_start = any.start(attitude, velocity).unwrap();
         for plan in [[0_u64, 5].as_slice(), &[1], &[4, 4, 1, 3], &[0], &[5, 100, 7]] {
             let (end, made, calls) = shown(&stepper, &start, plan);
-            assert_eq!(shown(&Bare(&stepper), &start, plan), (end, made.clone(), calls.clone()), "{plan:?}");
+            assert_eq!(
+                shown(&MinimalIntegrator(&stepper), &start, plan),
+                (end, made.clone(), calls.clone()),
+                "{plan:?}"
+            );
             assert_eq!(shown(&any, &any_start, plan), (end, made.clone(), calls.clone()), "{plan:?}");
-            assert_eq!(shown(&Bare(&any), &any_start, plan), (end, made.clone(), calls.clone()), "{plan:?}");
+            assert_eq!(
+                shown(&MinimalIntegrator(&any), &any_start, plan),
+                (end, made.clone(), calls.clone()),
+                "{plan:?}"
+            );
             let (numbers, start) = (any.any(), any.any().start_at(SO3::from(attitude), velocity).unwrap());
-            for (reached, spent, interrupted) in [shown(numbers, &start, plan), shown(&Bare(numbers), &start, plan)] {
+            for (reached, spent, interrupted) in
+                [shown(numbers, &start, plan), shown(&MinimalIntegrator(numbers), &start, plan)]
+            {
                 assert_eq!((spent, interrupted), (made.clone(), calls.clone()), "{plan:?}");
                 assert_eq!(Vector3::from_column_slice(reached.momentum()), end.momentum(), "{plan:?}");
                 assert_eq!(reached.steps(), end.steps(), "{plan:?}");

@@ -99,9 +99,9 @@ impl Write for FileBytes {
 }
 
 /// A writer to a full disk.
-struct Full;
+struct FullDisk;
 
-impl Write for Full {
+impl Write for FullDisk {
     fn write(&mut self, _: &[u8]) -> io::Result<usize> {
         Err(io::ErrorKind::StorageFull.into())
     }
@@ -113,19 +113,19 @@ impl Write for Full {
 
 /// Counts the rows of each block, and the ends of the table.
 #[derive(Debug, Default)]
-struct Calls {
+struct CallCounter {
     columns: usize,
     rows: Vec<usize>,
     ended: u32,
 }
 
-impl Calls {
+impl CallCounter {
     fn seen(&self) -> (&[usize], u32) {
         (&self.rows, self.ended)
     }
 }
 
-impl Sink for Calls {
+impl Sink for CallCounter {
     fn begin(&mut self, columns: &[Column]) -> Result<(), SinkError> {
         self.columns = columns.len();
         Ok(())
@@ -147,14 +147,14 @@ impl Sink for Calls {
 fn what_cannot_be_recorded_ends_the_run() {
     let (stepper, start) = top(0.01);
     let mut state = start;
-    let mut recorder = Recorder::new(&stepper, Csv::new(Full)).in_blocks_of(usize::MAX);
+    let mut recorder = Recorder::new(&stepper, Csv::new(FullDisk)).in_blocks_of(usize::MAX);
     let error = stepper.observed(&mut state).every(1, |now| recorder.record(now)).steps(10).unwrap_err();
     assert!(matches!(error, RunError::Observer { .. }) && state.steps() == 0, "{error}");
     assert!(error.to_string().contains("no storage space"), "{error}");
     drop(recorder);
 
     // A separate thread reports the error with a later block.
-    let mut recorder = Recorder::new(&stepper, Background::new(Csv::new(Full))).in_blocks_of(1);
+    let mut recorder = Recorder::new(&stepper, Background::new(Csv::new(FullDisk))).in_blocks_of(1);
     let error = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(1000).unwrap_err();
     assert!(error.to_string().contains("no storage space"), "{error}");
     assert!(recorder.finish().is_err());
@@ -166,7 +166,7 @@ fn what_cannot_be_recorded_ends_the_run() {
     assert!(matches!(recorder.finish(), Err(RecordError::SameName { .. })));
 
     // Rows of different lengths would be ambiguous.
-    let mut calls = Calls::default();
+    let mut calls = CallCounter::default();
     let mut recorder = Recorder::new(&stepper, &mut calls);
     recorder.record(&Moment::of_step(&stepper, &start)).unwrap();
     recorder.record(&Moment::of_step(&stepper, &start)).unwrap();
@@ -176,14 +176,14 @@ fn what_cannot_be_recorded_ends_the_run() {
     assert!(matches!(recorder.finish(), Err(RecordError::Late { .. })));
     // The previous rows are written, and the table has ended once, even if the user doesn't finish it.
     assert_eq!(calls.seen(), (&[2][..], 1));
-    let mut calls = Calls::default();
+    let mut calls = CallCounter::default();
     let mut recorder = Recorder::bare(&stepper, &mut calls);
     recorder.record(&Moment::of_step(&stepper, &start)).unwrap();
     drop(recorder.quantity("late", "1", |_| 0.0));
     assert_eq!(calls.seen(), (&[1][..], 1));
 
     // The length of blocks may change between two rows.
-    let mut calls = Calls::default();
+    let mut calls = CallCounter::default();
     let mut recorder = Recorder::new(&stepper, &mut calls);
     recorder.record(&Moment::of_step(&stepper, &start)).unwrap();
     let mut recorder = recorder.in_blocks_of(3);
@@ -242,12 +242,12 @@ fn a_table_in_a_thread_has_an_end_only_if_it_is_given_one() {
 }
 
 /// A sink that fails once, and logs its calls.
-struct Once {
+struct FailingSink {
     fails: &'static str,
     asked: Rc<RefCell<Vec<&'static str>>>,
 }
 
-impl Once {
+impl FailingSink {
     fn ask(&self, what: &'static str) -> Result<(), SinkError> {
         let mut asked = self.asked.borrow_mut();
         asked.push(what);
@@ -256,7 +256,7 @@ impl Once {
     }
 }
 
-impl Sink for Once {
+impl Sink for FailingSink {
     fn begin(&mut self, _: &[Column]) -> Result<(), SinkError> {
         self.ask("begin")
     }
@@ -282,7 +282,7 @@ fn a_sink_that_has_failed_gets_nothing_more() {
     ] {
         for finishes in [true, false] {
             let asked = Rc::new(RefCell::new(Vec::new()));
-            let sink = Once { fails, asked: asked.clone() };
+            let sink = FailingSink { fails, asked: asked.clone() };
             let mut recorder = Recorder::bare(&stepper, sink).in_blocks_of(2);
             let run = stepper.observed(&mut start.clone()).every(1, |now| recorder.record(now)).steps(3);
             assert_eq!(run.is_ok(), fails == "end");

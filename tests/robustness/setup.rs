@@ -13,7 +13,7 @@ struct Body {
 
 /// A planar body on SE(2) with a symmetric matrix that may be singular.
 #[lagrangian(group = SE2, l_d = ((F - I) * (A + A.transpose()) * (F - I).transpose()).trace() / (2.0 * h))]
-struct Planar {
+struct PlanarBody {
     A: Matrix3<f64>,
 }
 
@@ -61,8 +61,8 @@ fn a_negative_kinetic_part() {
     assert!(refusal!(Point { m: -1.0 }).contains("negative"));
     assert!(refusal!(Point { m: 0.0 }).contains("singular"));
     assert_eq!(refusal!(Point { m: 1e-100 }), "");
-    assert_eq!(refusal!(Planar { A: Matrix3::identity() }), "");
-    assert!(refusal!(Planar { A: Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0)) }).contains("negative"));
+    assert_eq!(refusal!(PlanarBody { A: Matrix3::identity() }), "");
+    assert!(refusal!(PlanarBody { A: Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0)) }).contains("negative"));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use clap::ArgMatches;
 use liestep::motion::Moment;
 use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
-use liestep_scene::{Column, MemberEvent, Mistake, Rotating, SceneEnsemble, SceneFile, Spread};
+use liestep_scene::{BodyIntegrator, Column, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread};
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
@@ -91,7 +91,7 @@ fn made(
 }
 
 /// Simulates the chunks of members, in lanes or one by one, and prints their outcome.
-fn finished<M: Rotating + 'static>(
+fn finished<M: BodyIntegrator + 'static>(
     path: &Path,
     scene: &SceneFile,
     drawn: &SceneEnsemble,
@@ -124,7 +124,7 @@ fn finished<M: Rotating + 'static>(
 }
 
 /// The plan of an ensemble. The file's text identifies it.
-fn plan<M: Rotating + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, members: Ensemble<M>) -> Ensemble<M> {
+fn plan<M: BodyIntegrator + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, members: Ensemble<M>) -> Ensemble<M> {
     let mut plan = members.seed(drawn.seed);
     if let Some(every) = drawn.every {
         plan = plan.every(every);
@@ -172,7 +172,7 @@ fn number(member: &Member<'_>, name: &str, spread: Spread) -> f64 {
 }
 
 /// The section of an event: its times, and the scene's columns then.
-fn section<M: Rotating + 'static>(
+fn section<M: BodyIntegrator + 'static>(
     scene: &Arc<SceneFile>,
     (name, event, function, stops): MemberEvent<M>,
 ) -> Section<M> {

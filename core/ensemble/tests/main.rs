@@ -368,9 +368,9 @@ fn a_run_can_be_watched_and_stopped() {
 
 /// A top whose longer runs fail, as a splitting's may for lack of digits.
 #[derive(Clone)]
-struct OnlySteps(Top);
+struct TopWithoutRuns(Top);
 
-impl Integrator for OnlySteps {
+impl Integrator for TopWithoutRuns {
     type Scalar = f64;
     type Motion = <Top as Integrator>::Motion;
     type Velocity = Vector3<f64>;
@@ -427,7 +427,7 @@ impl Integrator for OnlySteps {
 fn members_go_as_far_as_their_steps_do() {
     let stepwise = Ensemble::one_by_one("tops", 20, STEPS, |member| {
         let (stepper, state) = top(member)?;
-        Ok((OnlySteps(stepper), state))
+        Ok((TopWithoutRuns(stepper), state))
     });
     let stepwise =
         stepwise.seed(7).chunks_of(20).keep(["x", "y", "z"], |run| axis(run.state)).chunk(0, &|| false).unwrap();

@@ -6,7 +6,7 @@ use liestep_derivation::{Action, Carried, StagedDeclaration};
 /// A number of a term's advected parameters as a linear combination: the sum of the sum's numbers at these places, each
 /// times a parameter's number, if there is one, whose first place is among the parameters and whose second is among the
 /// constants of a step.
-pub(crate) type Combined = Vec<(Option<[usize; 2]>, usize)>;
+pub(crate) type Combination = Vec<(Option<[usize; 2]>, usize)>;
 
 /// The advected parameters of a sum, with the weights of its vectors.
 pub(crate) struct Carriage {
@@ -81,7 +81,7 @@ impl Carriage {
 
     /// The advected parameters of a term as combinations of the sum's; the term's own parameters begin at this field,
     /// and their numbers at this one.
-    pub(crate) fn take(&mut self, staged: &StagedDeclaration, fields: usize, numbers: usize) -> Vec<Combined> {
+    pub(crate) fn take(&mut self, staged: &StagedDeclaration, fields: usize, numbers: usize) -> Vec<Combination> {
         let mut combined = Vec::new();
         for (at, one) in staged.carried.iter().enumerate() {
             let moved = Carried { field: one.field.map(|field| fields + field), ..*one };

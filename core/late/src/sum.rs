@@ -6,7 +6,7 @@ use liestep_derivation::whole::{Value, Words};
 use liestep_derivation::{Array, Parameter, Program, Role, Source, StagedDeclaration, Stages};
 
 use crate::error::LateError;
-use crate::frames::{Carriage, Combined};
+use crate::frames::{Carriage, Combination};
 
 /// A term of a sum, with the places of its numbers among those of all terms.
 struct Part<'a> {
@@ -14,7 +14,7 @@ struct Part<'a> {
     parameters: usize,
     constants: usize,
     /// Each number of the term's advected parameters, as a combination of the sum's.
-    carried: Vec<Combined>,
+    carried: Vec<Combination>,
     /// Whether the term's system has the right side: that of one term has, and that of the others has zero.
     has_target: bool,
 }

@@ -48,7 +48,7 @@ pub struct Machine;
 
 /// A program as interpreted code, and as machine code once it is compiled.
 #[derive(Debug)]
-pub struct Both {
+pub struct Codes {
     program: Program,
     interpreted: Code,
     of_numbers: Compilation<Function<1>>,
@@ -96,12 +96,12 @@ const FEW: u32 = 256;
 const FEW_STEPS: u32 = 64;
 
 impl<T: Real> Backend<T> for Machine {
-    type Code = Both;
+    type Code = Codes;
 
-    fn codes(programs: &[&Program]) -> Result<Vec<Both>, LateError> {
+    fn codes(programs: &[&Program]) -> Result<Vec<Codes>, LateError> {
         function::isa().map_err(LateError::Machine)?;
         let interpreted = <Interpreter as Backend<f64>>::codes(programs)?;
-        let both = |(&program, interpreted): (&&Program, Code)| Both {
+        let both = |(&program, interpreted): (&&Program, Code)| Codes {
             program: program.clone(),
             interpreted,
             of_numbers: Compilation::default(),
@@ -111,7 +111,7 @@ impl<T: Real> Backend<T> for Machine {
         Ok(programs.iter().zip(interpreted).map(both).collect())
     }
 
-    fn prepare(code: &Both) {
+    fn prepare(code: &Codes) {
         match lanes_of::<T>() {
             1 => code.of_numbers.make(|| Function::of(&code.program)),
             LANES => code.of_lanes.make(|| Function::of(&code.program)),
@@ -120,7 +120,7 @@ impl<T: Real> Backend<T> for Machine {
     }
 
     #[inline]
-    fn step(usual: &UsualStep<'_, Both>, inputs: StepInputs<'_, T>, state: &mut [T]) -> u64 {
+    fn step(usual: &UsualStep<'_, Codes>, inputs: StepInputs<'_, T>, state: &mut [T]) -> u64 {
         let compilation = &usual.finish.of_step;
         if let Some(function) = compilation.function.get() {
             return function.call(inputs, state);
@@ -129,13 +129,13 @@ impl<T: Real> Backend<T> for Machine {
         0
     }
 
-    fn prepare_step(usual: &UsualStep<'_, Both>) -> bool {
+    fn prepare_step(usual: &UsualStep<'_, Codes>) -> bool {
         usual.finish.of_step.make(|| StepFunction::of(&usual.map(|both| &both.program)));
         usual.finish.of_step.function.get().is_some()
     }
 
     #[cfg_attr(not(debug_assertions), inline(always))]
-    fn run<const N: usize>(code: &Both, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
+    fn run<const N: usize>(code: &Codes, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
         let lanes = lanes_of::<T>();
         if let Some(function) = code.of_numbers.function.get().filter(|_| lanes == 1) {
             function.call(constants, given, outputs);
@@ -150,7 +150,7 @@ impl<T: Real> Backend<T> for Machine {
 /// Interprets a run, and compiles the program when that is due.
 #[cold]
 #[inline(never)]
-fn run_first<T: Real, const N: usize>(code: &Both, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
+fn run_first<T: Real, const N: usize>(code: &Codes, constants: &[T], given: Given<'_, T, N>, outputs: &mut [T]) {
     match lanes_of::<T>() {
         1 => code.of_numbers.run(FEW, || Function::of(&code.program)),
         LANES => code.of_lanes.run(FEW, || Function::of(&code.program)),

@@ -174,7 +174,7 @@ impl Piece {
     pub(crate) fn begin(
         self,
         new: impl FnOnce(Vec<Option<Place>>, Vec<Vec<usize>>) -> Registers,
-    ) -> Result<Writing, String> {
+    ) -> Result<PieceWriter, String> {
         if !self.waiting.is_empty() {
             return Err("places of a state wait for each other".to_owned());
         }
@@ -198,18 +198,18 @@ impl Piece {
             Origin::Result(_) => None,
         });
         let registers = new(places.collect(), reads);
-        Ok(Writing { values: self.values, parts: self.parts.into_iter(), registers })
+        Ok(PieceWriter { values: self.values, parts: self.parts.into_iter(), registers })
     }
 }
 
 /// A piece that is being written.
-pub(crate) struct Writing {
+pub(crate) struct PieceWriter {
     values: Vec<Origin>,
     parts: std::vec::IntoIter<Part>,
     registers: Registers,
 }
 
-impl Writing {
+impl PieceWriter {
     /// Writes up to the next end; returns the values that were taken.
     pub(crate) fn write(&mut self, builder: &mut FunctionBuilder, callee: &Callee) -> Result<Vec<Value>, String> {
         let mut taken = Vec::new();

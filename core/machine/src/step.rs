@@ -17,7 +17,7 @@ use liestep_late::{Array, Program, Sizes, Source, UsualStep};
 
 use crate::function::{Literals, code as code_of, flags, offset};
 use crate::operation::Callee;
-use crate::piece::{Piece, Writing};
+use crate::piece::{Piece, PieceWriter};
 use crate::registers::{Frame, Place, Registers};
 
 /// The numbers that decisions compare with.
@@ -154,12 +154,12 @@ impl Step<'_, '_> {
         piece.append(program, input, |_, number| self.literal(number))
     }
 
-    fn begin(&self, piece: Piece) -> Result<Writing, String> {
+    fn begin(&self, piece: Piece) -> Result<PieceWriter, String> {
         let own = 8 * u32::try_from(2 * self.sizes().n + 1).map_err(|_| "a frame is too large")?;
         piece.begin(|places, reads| Registers::new(types::F64, flags(), (self.frame, own), places, reads))
     }
 
-    fn write(&mut self, writing: &mut Writing) -> Result<Vec<Value>, String> {
+    fn write(&mut self, writing: &mut PieceWriter) -> Result<Vec<Value>, String> {
         writing.write(self.builder, self.callee)
     }
 

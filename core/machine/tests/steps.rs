@@ -50,7 +50,7 @@ fn bits(state: &[f64]) -> Vec<u64> {
 
 /// The counts of a comparison.
 #[derive(Debug, Default)]
-struct Seen {
+struct Counts {
     steps: u32,
     errors: u32,
     with_care: u32,
@@ -62,7 +62,7 @@ fn of<B: Backend<f64>>(text: &'static Declaration, all: &[f64], h: f64, method: 
 }
 
 /// Compares the steps of a declaration with random numbers.
-fn compare(declaration: &'static Declaration, method: &str, seed: u64, seen: &mut Seen) {
+fn compare(declaration: &'static Declaration, method: &str, seed: u64, seen: &mut Counts) {
     let mut random = Random::new(seed);
     let values = numbers(declaration, &mut random);
     let n: usize = declaration.factors.iter().map(|factor| factor.generators.len()).sum();
@@ -126,7 +126,7 @@ fn steps_of_all_declarations() {
         FourthOrderTop SixthOrderTop ElasticFlow TetheredPlate Flyer OrbitingBody UnderwaterBody DoublePendulum TopOnCart
         FloatingBody FallingBody SuspendedLoad Gyrostat TwoBodies RigidBody
     };
-    let mut seen = Seen::default();
+    let mut seen = Counts::default();
     let all = texts.into_iter().chain(OTHERS).map(parsed);
     let terms = texts! { RigidBody Gravity GravityGradient Rotor Drag Torque }.map(parsed);
     let pendulum = texts! { DoublePendulum Alike }.map(parsed);

@@ -38,7 +38,7 @@ pub use file::scene::{SceneFile, Sweep};
 pub use file::system::System;
 pub use import::{Import, import};
 pub use run::choose::Whole;
-pub use run::course::{MemberEvent, MemberStart, Rotating};
+pub use run::course::{BodyIntegrator, MemberEvent, MemberStart};
 pub use run::make::{Happening, Run};
 pub use show::derivation::{Form, declaration, derivation, derived, written};
 pub use show::recording::Recording;

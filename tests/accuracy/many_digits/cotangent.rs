@@ -18,7 +18,7 @@ use num_traits::{One as _, Zero as _};
 use super::collocation::Tableau;
 use super::{DoubleDouble, long};
 
-type Long = DMatrix<DoubleDouble>;
+type LongMatrix = DMatrix<DoubleDouble>;
 
 macro_rules! declared {
     ($name:ident: $group:ident, $vector:ident, $matrix:ident $(, $($own:tt)*)?) => {
@@ -45,7 +45,7 @@ macro_rules! declared {
 
         impl $name {
             fn read<const N: usize>(system: &System, w: &SVector<f64, N>) -> Self {
-                let rounded = |a: &Long| a.map(DoubleDouble::rounded);
+                let rounded = |a: &LongMatrix| a.map(DoubleDouble::rounded);
                 Self {
                     J: $matrix::from_iterator(rounded(&system.J).iter().copied()),
                     r: $vector::from_iterator(rounded(&system.r).iter().copied()),
@@ -64,15 +64,15 @@ declared!(OnAffine: Affine, Vector2, Matrix2, generators = [[[1.0, 0.0], [0.0, 0
 
 /// The Lagrangian's parameters and the group's basis.
 struct System {
-    basis: Vec<Long>,
-    J: Long,
-    r: Long,
+    basis: Vec<LongMatrix>,
+    J: LongMatrix,
+    r: LongMatrix,
     c: DoubleDouble,
     k: DoubleDouble,
 }
 
 /// The solution of `A x = b`, by elimination.
-fn solve(a: &Long, b: &Long) -> Long {
+fn solve(a: &LongMatrix, b: &LongMatrix) -> LongMatrix {
     let (mut a, mut b, n) = (a.clone(), b.clone(), a.nrows());
     for k in 0..n {
         let size = |i: usize| a[(i, k)].rounded().abs();
@@ -85,19 +85,19 @@ fn solve(a: &Long, b: &Long) -> Long {
             (0..b.ncols()).for_each(|j| b[(i, j)] = b[(i, j)] - factor * b[(k, j)]);
         }
     }
-    Long::from_fn(n, b.ncols(), |i, j| b[(i, j)] / a[(i, i)])
+    LongMatrix::from_fn(n, b.ncols(), |i, j| b[(i, j)] / a[(i, i)])
 }
 
-fn paired(a: &Long, b: &Long) -> DoubleDouble {
+fn paired(a: &LongMatrix, b: &LongMatrix) -> DoubleDouble {
     a.iter().zip(b.iter()).fold(DoubleDouble::zero(), |sum, (a, b)| sum + *a * *b)
 }
 
-fn times(a: &Long, factor: DoubleDouble) -> Long {
+fn times(a: &LongMatrix, factor: DoubleDouble) -> LongMatrix {
     a.map(|entry| entry * factor)
 }
 
 /// The phase-space point `(g, p)`.
-type Place = [Long; 2];
+type Place = [LongMatrix; 2];
 
 impl System {
     fn new<G: MatrixLieGroup<N, D>, const N: usize, const D: usize>(seed: u64) -> Self {
@@ -105,7 +105,7 @@ impl System {
         let (root, r): (SMatrix<f64, N, N>, SVector<f64, N>) = (random.sample(), random.sample());
         let metric = root * root.transpose() + SMatrix::identity();
         let lifted = |rows: usize, columns: usize, entry: &dyn Fn(usize, usize) -> f64| {
-            Long::from_fn(rows, columns, |i, j| long(entry(i, j)))
+            LongMatrix::from_fn(rows, columns, |i, j| long(entry(i, j)))
         };
         let basis = (0..D).map(|k| {
             let generator = G::hat(&SVector::from_fn(|j, _| if j == k { 1.0 } else { 0.0 }));
@@ -120,34 +120,35 @@ impl System {
         }
     }
 
-    fn hat(&self, xi: &Long) -> Long {
-        let zero = Long::zeros(self.J.nrows(), self.J.nrows());
+    fn hat(&self, xi: &LongMatrix) -> LongMatrix {
+        let zero = LongMatrix::zeros(self.J.nrows(), self.J.nrows());
         self.basis.iter().zip(xi.iter()).fold(zero, |sum, (generator, x)| sum + times(generator, *x))
     }
 
     /// The momentum `μ_k = tr(pᵀ g E_k)`.
-    fn momentum(&self, [g, p]: &Place) -> Long {
+    fn momentum(&self, [g, p]: &Place) -> LongMatrix {
         let own = g.transpose() * p;
-        Long::from_fn(self.basis.len(), 1, |k, _| paired(&own, &self.basis[k]))
+        LongMatrix::from_fn(self.basis.len(), 1, |k, _| paired(&own, &self.basis[k]))
     }
 
     /// The components of an element of the algebra; the basis is orthogonal.
-    fn components(&self, element: &Long) -> Long {
-        Long::from_fn(self.basis.len(), 1, |k, _| {
+    fn components(&self, element: &LongMatrix) -> LongMatrix {
+        LongMatrix::from_fn(self.basis.len(), 1, |k, _| {
             paired(element, &self.basis[k]) / paired(&self.basis[k], &self.basis[k])
         })
     }
 
     /// The rates `ġ = g ξ̂`, `ṗ = −p ξ̂ᵀ + g⁻ᵀ Γ` with `Γ = w (∂l/∂w)ᵀ`.
-    fn rate(&self, spatial: &Long, place: &Place) -> Place {
+    fn rate(&self, spatial: &LongMatrix, place: &Place) -> Place {
         let [g, p] = place;
         let w = g.transpose() * spatial;
         let (height, one, two) = (paired(&w, &self.r), DoubleDouble::one(), long(2.0));
         let factor = one + height * height;
         let dimension = self.basis.len();
-        let at_rest = Long::from_fn(dimension, 1, |k, _| self.c * paired(&w, &(&self.basis[k] * &self.r)));
-        let hessian =
-            Long::from_fn(dimension, dimension, |k, j| factor * paired(&(&self.basis[k] * &self.J), &self.basis[j]));
+        let at_rest = LongMatrix::from_fn(dimension, 1, |k, _| self.c * paired(&w, &(&self.basis[k] * &self.r)));
+        let hessian = LongMatrix::from_fn(dimension, dimension, |k, j| {
+            factor * paired(&(&self.basis[k] * &self.J), &self.basis[j])
+        });
         let x = self.hat(&solve(&hessian, &(self.momentum(place) - at_rest)));
         let quadratic = paired(&(&x * &self.J), &x);
         let slope = times(&self.r, quadratic * height - two * self.k * height) + times(&(&x * &self.r), self.c);
@@ -156,11 +157,18 @@ impl System {
     }
 
     /// The attitude and momentum after this number of steps, from the identity with this momentum.
-    fn end(&self, tableau: &Tableau, spatial: &Long, momentum: &Long, h: DoubleDouble, steps: u32) -> (Long, Long) {
+    fn end(
+        &self,
+        tableau: &Tableau,
+        spatial: &LongMatrix,
+        momentum: &LongMatrix,
+        h: DoubleDouble,
+        steps: u32,
+    ) -> (LongMatrix, LongMatrix) {
         let n = self.J.nrows();
         let unit = |k: usize| paired(&self.basis[k], &self.basis[k]);
-        let scaled = Long::from_fn(self.basis.len(), 1, |k, _| momentum[k] / unit(k));
-        let mut place: Place = [Long::identity(n, n), self.hat(&scaled)];
+        let scaled = LongMatrix::from_fn(self.basis.len(), 1, |k, _| momentum[k] / unit(k));
+        let mut place: Place = [LongMatrix::identity(n, n), self.hat(&scaled)];
         for _ in 0..steps {
             let sum = |row: &[DoubleDouble], rates: &[Place]| {
                 row.iter().zip(rates).fold(place.clone(), |at, (a, rate)| {
@@ -190,15 +198,15 @@ impl System {
     }
 
     /// The Poisson tensor `{μ_k, μ_l} = −⟨μ, [E_k, E_l]⟩`, `{μ_k, w} = E_k·w = −E_kᵀ w`.
-    fn tensor(&self, z: &Long) -> Long {
+    fn tensor(&self, z: &LongMatrix) -> LongMatrix {
         let dimension = self.basis.len();
         let (momentum, w) = (z.rows(0, dimension).into_owned(), z.rows(dimension, self.J.nrows()).into_owned());
-        let moved: Vec<Long> = self.basis.iter().map(|generator| generator.transpose() * &w).collect();
+        let moved: Vec<LongMatrix> = self.basis.iter().map(|generator| generator.transpose() * &w).collect();
         let bracket = |k: usize, l: usize| {
             let (a, b) = (&self.basis[k], &self.basis[l]);
             -paired(&momentum, &self.components(&(a * b - b * a)))
         };
-        Long::from_fn(z.nrows(), z.nrows(), |i, j| match (i < dimension, j < dimension) {
+        LongMatrix::from_fn(z.nrows(), z.nrows(), |i, j| match (i < dimension, j < dimension) {
             (true, true) => bracket(i, j),
             (true, false) => -moved[i][j - dimension],
             (false, true) => moved[j][i - dimension],
@@ -207,16 +215,16 @@ impl System {
     }
 
     /// The largest entry of `DΦ B(z) DΦᵀ − B(Φ(z))`, by differences of six points with an error of some 10⁻²⁶.
-    fn poisson_defect(&self, tableau: &Tableau, z: &Long, h: f64) -> f64 {
+    fn poisson_defect(&self, tableau: &Tableau, z: &LongMatrix, h: f64) -> f64 {
         let dimension = self.basis.len();
-        let map = |z: &Long| {
+        let map = |z: &LongMatrix| {
             let (momentum, w) = (z.rows(0, dimension).into_owned(), z.rows(dimension, self.J.nrows()).into_owned());
             let (g, momentum) = self.end(tableau, &w, &momentum, long(h), 1);
             let w = g.transpose() * w;
-            Long::from_iterator(z.nrows(), 1, momentum.iter().chain(w.iter()).copied())
+            LongMatrix::from_iterator(z.nrows(), 1, momentum.iter().chain(w.iter()).copied())
         };
         let d = 1e-5;
-        let mut tangent = Long::zeros(z.nrows(), z.nrows());
+        let mut tangent = LongMatrix::zeros(z.nrows(), z.nrows());
         for k in 0..z.nrows() {
             let at = |steps: f64| {
                 let mut z = z.clone();
@@ -238,12 +246,12 @@ fn start<const N: usize, const D: usize>(seed: u64) -> (SVector<f64, D>, SVector
     (random.sample(), random.sample())
 }
 
-fn column<const R: usize>(vector: &SVector<f64, R>) -> Long {
-    Long::from_iterator(R, 1, vector.iter().map(|&entry| long(entry)))
+fn column<const R: usize>(vector: &SVector<f64, R>) -> LongMatrix {
+    LongMatrix::from_iterator(R, 1, vector.iter().map(|&entry| long(entry)))
 }
 
 /// The relative distance of doubles from the long numbers.
-fn relative<'a>(expected: &Long, found: impl Iterator<Item = &'a f64>) -> f64 {
+fn relative<'a>(expected: &LongMatrix, found: impl Iterator<Item = &'a f64>) -> f64 {
     let rounded = expected.map(DoubleDouble::rounded);
     let apart: f64 = rounded.iter().zip(found).map(|(a, b)| (a - b).powi(2)).sum();
     apart.sqrt() / rounded.norm()
@@ -296,7 +304,7 @@ macro_rules! assert_collocation {
             assert!((order - expected).abs() < 0.15, "{name}, {stages} stages: order {order}, errors {errors:?}");
         }
 
-        let z = Long::from_iterator($d + $n, 1, long_momentum.iter().chain(spatial.iter()).copied());
+        let z = LongMatrix::from_iterator($d + $n, 1, long_momentum.iter().chain(spatial.iter()).copied());
         for stages in [2, 6] {
             let tableau = Tableau::new(stages);
             let defect = system.poisson_defect(&tableau, &z, 0.2);

@@ -14,7 +14,7 @@ use crate::called::{called, folder};
 
 /// A file with its name.
 #[derive(Clone)]
-struct Written {
+struct TextFile {
     name: String,
     text: String,
 }
@@ -26,7 +26,7 @@ fn scene(name: &str) -> String {
 }
 
 /// Replaces the removed lines by the added ones, once.
-fn change(file: &mut Written, removed: &mut String, added: &mut String) {
+fn change(file: &mut TextFile, removed: &mut String, added: &mut String) {
     assert!(file.text.contains(removed.as_str()), "{} has no\n{removed}", file.name);
     file.text =
         if removed.is_empty() { file.text.clone() + added } else { file.text.replacen(removed.as_str(), added, 1) };
@@ -35,7 +35,7 @@ fn change(file: &mut Written, removed: &mut String, added: &mut String) {
 }
 
 /// Applies the lines of a paragraph to its files.
-fn changed<'a>(mut files: Vec<Written>, lines: impl Iterator<Item = &'a str>) -> Vec<Written> {
+fn changed<'a>(mut files: Vec<TextFile>, lines: impl Iterator<Item = &'a str>) -> Vec<TextFile> {
     let (mut removed, mut added, mut has_own) = (String::new(), String::new(), false);
     for line in lines.filter(|line| !line.starts_with("//")).chain(["end"]) {
         if let Some(line) = line.strip_prefix('+') {
@@ -51,9 +51,10 @@ fn changed<'a>(mut files: Vec<Written>, lines: impl Iterator<Item = &'a str>) ->
         let file = line.strip_prefix("scene ").map(|line| {
             let (name, file) =
                 line.split_once(" as ").map_or_else(|| (line, format!("{line}.toml")), |(a, b)| (a, b.to_owned()));
-            Written { name: file, text: scene(name) }
+            TextFile { name: file, text: scene(name) }
         });
-        let file = file.or_else(|| Some(Written { name: line.strip_prefix("file ")?.to_owned(), text: String::new() }));
+        let file =
+            file.or_else(|| Some(TextFile { name: line.strip_prefix("file ")?.to_owned(), text: String::new() }));
         if let Some(file) = file {
             if !std::mem::replace(&mut has_own, true) {
                 files.clear();
@@ -99,10 +100,10 @@ fn answered(text: &str, folder: &Path) -> String {
         }
         paragraphs.last_mut().expect("a paragraph").push(line);
     }
-    let (mut files, mut commands): (Vec<Written>, Vec<&str>) = (Vec::new(), Vec::new());
+    let (mut files, mut commands): (Vec<TextFile>, Vec<&str>) = (Vec::new(), Vec::new());
     let answered = paragraphs.iter().map(|lines| {
         let written = changed(files.clone(), lines.iter().copied());
-        for Written { name, text } in &written {
+        for TextFile { name, text } in &written {
             fs::write(folder.join(name), text).unwrap();
         }
         if lines.iter().any(|line| line.starts_with("scene ") || line.starts_with("file ")) {

@@ -28,7 +28,7 @@ const HELD: &str = include_str!("scenes/held.toml");
     },
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Heavy {
+struct HeavyBody {
     J: Inertia,
     J_d: NonstandardInertia,
     rigid: f64,
@@ -66,7 +66,7 @@ fn a_file_is_what_a_program_makes() {
     let second = Inertia::new(full).unwrap();
     let by_3_13 = |J: Inertia, m| {
         let (rigid, geodesic, cayley) = (1.0, 0.0, 0.0);
-        Heavy { J, J_d: J.to_nonstandard(), rigid, geodesic, cayley, m, g, up }
+        HeavyBody { J, J_d: J.to_nonstandard(), rigid, geodesic, cayley, m, g, up }
     };
     let mut bodies = Multibody::new();
     bodies.body(by_3_13(first, 1.5));

@@ -38,12 +38,12 @@ type Matrix = [(usize, usize, f64)];
 type Case<'a> = (&'a str, usize, &'a [&'a Matrix], &'a [f64], usize, f64);
 
 /// A group by its generators, and a metric `tr(E J Eᵀ)`.
-struct Free {
+struct FreeMotion {
     stepper: Whole,
     identity: Vec<f64>,
 }
 
-impl Free {
+impl FreeMotion {
     fn on(n: usize, generators: &[&Matrix], h: f64, diagonal: &[f64]) -> Self {
         let row = |row: &[f64]| format!("{row:?}");
         let matrix = |entries: &&Matrix| {
@@ -93,7 +93,7 @@ fn the_least_effort_on_groups_of_texts() {
     ];
     for (name, n, generators, diagonal, along, inertia) in cases {
         let error = |steps: u32| {
-            let free = Free::on(n, generators, 2.0 / f64::from(steps), diagonal);
+            let free = FreeMotion::on(n, generators, 2.0 / f64::from(steps), diagonal);
             let mut xi = vec![0.0; generators.len()];
             xi[along] = 0.8;
             let (start, end) = (free.at(&vec![0.0; xi.len()]), free.at(&xi));
@@ -112,7 +112,7 @@ fn the_least_effort_on_groups_of_texts() {
 /// The multipliers are the derivatives of the least cost by the target, on SO(4) with an asymmetric metric.
 #[test]
 fn multipliers_on_a_group_of_a_text() {
-    let free = Free::on(4, &rotations_of_four(), 0.1, &[1.0, 1.3, 0.7, 2.0]);
+    let free = FreeMotion::on(4, &rotations_of_four(), 0.1, &[1.0, 1.3, 0.7, 2.0]);
     let xi = [0.3, -0.2, 0.4, 0.1, 0.5, -0.3];
     let end = free.at(&xi);
     let cost = |change: &[f64]| {

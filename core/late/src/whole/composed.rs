@@ -5,7 +5,7 @@ use liestep::{SetupError, StepError};
 
 use super::codes::Codes;
 use super::constants::StepConstants;
-use super::step::{Increment, Numbered};
+use super::step::{Increment, StepCodes};
 use crate::code::Backend;
 
 /// A stage, and the linear extrapolation of its coordinates and of the previous stage's to the next stage's guess.
@@ -86,7 +86,7 @@ impl Stages {
     #[inline]
     pub(super) fn step_in_one_piece<B: Backend<f64>>(
         &self,
-        numbered: Numbered<'_, B>,
+        numbered: StepCodes<'_, B>,
         state: &mut [f64],
     ) -> Option<u32> {
         numbered.step_in_one_piece(self.single()?, state)
@@ -96,7 +96,7 @@ impl Stages {
     #[inline]
     pub(super) fn step<B: Backend<f64>>(
         &self,
-        numbered: Numbered<'_, B>,
+        numbered: StepCodes<'_, B>,
         state: &mut [f64],
         room: &mut [f64],
     ) -> Result<u32, StepError> {
@@ -106,7 +106,7 @@ impl Stages {
     /// One step, whose stages are watched: `watch` gets the constants of each and the state before it, and then after it.
     pub(super) fn watched<B: Backend<f64>>(
         &self,
-        numbered: Numbered<'_, B>,
+        numbered: StepCodes<'_, B>,
         state: &mut [f64],
         room: &mut [f64],
         watch: &mut impl FnMut(&StepConstants, &[f64]),
@@ -129,7 +129,7 @@ impl Stages {
     /// One step of a composition, whose increments a function makes from the number of a stage, a state and room.
     pub(super) fn each<B: Backend<f64>>(
         &self,
-        numbered: Numbered<'_, B>,
+        numbered: StepCodes<'_, B>,
         state: &mut [f64],
         room: &mut [f64],
         make: &mut impl FnMut(usize, &mut [f64], &mut [f64]) -> Result<Increment, StepError>,

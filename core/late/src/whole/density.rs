@@ -8,7 +8,7 @@ use liestep_derivation::whole::Form;
 use nalgebra::Vector3;
 
 use super::linear::{dot, solution};
-use super::step::Numbered;
+use super::step::StepCodes;
 use super::stepper::{Whole, WholeError};
 use super::varied::Varied;
 use crate::code::Backend;
@@ -54,7 +54,7 @@ impl<B: Backend<f64>> Whole<B> {
             }
             let [momentum, angular] = [momentum, velocity].map(Vector3::from_column_slice);
             let rate = momentum.cross(&angular) + Vector3::from_column_slice(&torque);
-            let inertia = Numbered { codes: &*codes, numbers: &numbers }.limit(advected).inertia();
+            let inertia = StepCodes { codes: &*codes, numbers: &numbers }.limit(advected).inertia();
             dot(velocity, &solution(&inertia, rate.as_slice())) / (dot(velocity, velocity) + floor * floor)
         };
         Ok(self.with_density(rate))

@@ -14,7 +14,7 @@ use crate::code::{Backend, StepInputs};
 
 /// A declaration's code with numbers for its parameters.
 #[derive(Clone, Copy)]
-pub(super) struct Numbered<'a, B: Backend<f64>> {
+pub(super) struct StepCodes<'a, B: Backend<f64>> {
     pub(super) codes: &'a Codes<B>,
     pub(super) numbers: &'a [f64],
 }
@@ -48,7 +48,7 @@ pub(super) fn room<B: Backend<f64>>(codes: &Codes<B>) -> usize {
     codes.code.target.outputs + Iterates::room(codes) + codes.code.finish.outputs
 }
 
-impl<'a, B: Backend<f64>> Numbered<'a, B> {
+impl<'a, B: Backend<f64>> StepCodes<'a, B> {
     /// The continuous limit at these advected parameters.
     pub(super) fn limit(&self, advected: &'a [f64]) -> Limit<'a, B> {
         Limit { codes: self.codes, numbers: self.numbers, advected }

@@ -13,7 +13,7 @@ use super::codes::{Codes, rare};
 use super::composed::Stages;
 use super::diagnosis::Step;
 use super::linear::are_finite;
-use super::step::Numbered;
+use super::step::StepCodes;
 use crate::code::{Backend, Interpreter};
 use crate::declaration::Declaration;
 use crate::error::LateError;
@@ -197,8 +197,8 @@ impl<B: Backend<f64>> Whole<B> {
         Ok(state)
     }
 
-    pub(super) fn numbered(&self) -> Numbered<'_, B> {
-        Numbered { codes: &self.codes, numbers: &self.numbers }
+    pub(super) fn numbered(&self) -> StepCodes<'_, B> {
+        StepCodes { codes: &self.codes, numbers: &self.numbers }
     }
 
     /// The state if it has the length of one.

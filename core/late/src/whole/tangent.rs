@@ -9,7 +9,7 @@ use liestep_derivation::whole::WholeStep;
 use super::composed::Stages;
 use super::constants::StepConstants;
 use super::linear::are_finite;
-use super::step::Numbered;
+use super::step::StepCodes;
 use crate::code::Backend;
 use crate::declaration::{Declaration, Ready, ready_each};
 use crate::error::LateError;
@@ -34,7 +34,7 @@ impl Stages {
     /// `2n` numbers. After an error the state is as it was.
     pub(super) fn transition<B: Backend<f64>>(
         &self,
-        numbered: Numbered<'_, B>,
+        numbered: StepCodes<'_, B>,
         tangent: &TangentCode<B>,
         state: &mut [f64],
         room: &mut [f64],

@@ -12,7 +12,7 @@ use super::composed::Stages;
 use super::course::Course;
 use super::lengths::{Lengths, MEMORY, Memory, Rate};
 use super::linear::are_finite;
-use super::step::{Increment, Numbered};
+use super::step::{Increment, StepCodes};
 use super::stepper::{OF_THIS_LAYOUT, Whole, write_or_nan};
 use crate::code::{Backend, Interpreter};
 
@@ -227,7 +227,7 @@ impl<B: Backend<f64>> Varied<B> {
         state[..inner].copy_from_slice(&room.state[..inner]);
         state[last] = room.state[inner];
         let velocity = || {
-            let numbered = Numbered { codes: &*self.whole.codes, numbers: &room.numbers };
+            let numbered = StepCodes { codes: &*self.whole.codes, numbers: &room.numbers };
             let limit = numbered.limit(&room.state[sizes.advected()..sizes.history()]);
             limit.velocity(&room.state[sizes.momentum()..sizes.advected()])
         };
@@ -450,7 +450,7 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
         let sizes = &self.whole.codes.sizes;
         let found = self.checked(state).map(|state| {
             let numbers = self.numbers_at(self.time(state));
-            let numbered = Numbered { codes: &*self.whole.codes, numbers: &numbers };
+            let numbered = StepCodes { codes: &*self.whole.codes, numbers: &numbers };
             numbered
                 .limit(&state[sizes.advected()..sizes.history()])
                 .velocity(&state[sizes.momentum()..sizes.advected()])
@@ -462,7 +462,7 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
         let sizes = &self.whole.codes.sizes;
         self.checked(state).map_or(f64::NAN, |state| {
             let numbers = self.numbers_at(self.time(state));
-            let numbered = Numbered { codes: &*self.whole.codes, numbers: &numbers };
+            let numbered = StepCodes { codes: &*self.whole.codes, numbers: &numbers };
             let limit = numbered.limit(&state[sizes.advected()..sizes.history()]);
             limit.energy(&limit.velocity(&state[sizes.momentum()..sizes.advected()]))
         })

@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use crate::file::group::Group;
-use crate::file::mistake::{Wrong, advised};
+use crate::file::mistake::{SpanMessage, advised};
 use crate::file::parameter::{in_value, list, matrix};
 use crate::file::quantity::{Angle, Scalar};
 use crate::file::start::Start;
@@ -37,7 +37,7 @@ const ONE_VELOCITY: &str = "a start has one of `velocity` and `momentum`";
 
 impl Beginning {
     /// The start of a table `start` on a group.
-    pub(crate) fn read(value: &Value<'_>, group: &Group) -> Result<Self, Wrong> {
+    pub(crate) fn read(value: &Value<'_>, group: &Group) -> Result<Self, SpanMessage> {
         let Some(table) = value.get_ref().as_table() else {
             return Err((value.span(), "`start` is a table".to_owned()));
         };
@@ -113,7 +113,7 @@ struct Place<'t, 'a> {
 }
 
 impl Place<'_, '_> {
-    fn start(&self) -> Result<Beginning, Wrong> {
+    fn start(&self) -> Result<Beginning, SpanMessage> {
         let is_rotation = self.factor.kind == FactorKind::Rotation;
         if is_rotation && self.table.get("attitude").is_none() {
             return self.turned();
@@ -143,7 +143,7 @@ impl Place<'_, '_> {
     }
 
     /// The start of a body that turns.
-    fn turned(&self) -> Result<Beginning, Wrong> {
+    fn turned(&self) -> Result<Beginning, SpanMessage> {
         let momentum = self.table.get("momentum");
         let mut table = self.table.clone();
         if let Some(momentum) = momentum {
@@ -162,7 +162,7 @@ impl Place<'_, '_> {
     }
 
     /// The start of a rotation in a table, to which a velocity of zero may be added.
-    fn read(&self, mut table: DeTable<'_>, at_rest: bool) -> Result<Start, Wrong> {
+    fn read(&self, mut table: DeTable<'_>, at_rest: bool) -> Result<Start, SpanMessage> {
         if at_rest && let Ok(zero) = DeValue::parse("[0, 0, 0]") {
             let key = Spanned::new(self.value.span(), "velocity".into());
             table.insert(key, Spanned::new(self.value.span(), zero.into_inner()));
@@ -172,7 +172,7 @@ impl Place<'_, '_> {
     }
 
     /// The entries of the attitude, the identity by default.
-    fn attitude(&self) -> Result<Vec<f64>, Wrong> {
+    fn attitude(&self) -> Result<Vec<f64>, SpanMessage> {
         let rows = self.factor.kind.rows();
         let parts = ["angle", "position"].into_iter().chain(ROTATIONS);
         let mut parts = parts.filter_map(|key| self.table.get(key));

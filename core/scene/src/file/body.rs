@@ -95,11 +95,11 @@ impl<'de> Visitor<'de> for BodyTable {
                     inertia = Some((J, Distribution::Principal(J_d)));
                 }
                 Key::Nonstandard => {
-                    let Nonstandard(J_d) = table.next_value()?;
+                    let NonstandardMoments(J_d) = table.next_value()?;
                     inertia = Some((NonstandardInertia::from(J_d).to_inertia(), Distribution::Principal(J_d)));
                 }
                 Key::Full => {
-                    let Full(J) = table.next_value()?;
+                    let InertiaRows(J) = table.next_value()?;
                     inertia = Some((J, Distribution::Full(J.to_nonstandard())));
                 }
             }
@@ -144,9 +144,9 @@ impl TryFrom<Triple<quantity::Inertia>> for Moments {
 /// Principal nonstandard moments of a possible body.
 #[derive(Deserialize)]
 #[serde(try_from = "Triple<quantity::Inertia>")]
-pub(crate) struct Nonstandard(pub(crate) DiagonalNonstandardInertia);
+pub(crate) struct NonstandardMoments(pub(crate) DiagonalNonstandardInertia);
 
-impl TryFrom<Triple<quantity::Inertia>> for Nonstandard {
+impl TryFrom<Triple<quantity::Inertia>> for NonstandardMoments {
     type Error = InertiaError;
 
     fn try_from(diagonal: Triple<quantity::Inertia>) -> Result<Self, InertiaError> {
@@ -157,9 +157,9 @@ impl TryFrom<Triple<quantity::Inertia>> for Nonstandard {
 /// The inertia tensor in any axes, by its rows.
 #[derive(Deserialize)]
 #[serde(try_from = "Vec<Triple<quantity::Inertia>>")]
-pub(crate) struct Full(pub(crate) Inertia);
+pub(crate) struct InertiaRows(pub(crate) Inertia);
 
-impl TryFrom<Vec<Triple<quantity::Inertia>>> for Full {
+impl TryFrom<Vec<Triple<quantity::Inertia>>> for InertiaRows {
     type Error = String;
 
     fn try_from(rows: Vec<Triple<quantity::Inertia>>) -> Result<Self, String> {

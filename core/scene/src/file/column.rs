@@ -8,7 +8,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::group::Group;
-use crate::file::mistake::{Wrong, advised};
+use crate::file::mistake::{SpanMessage, advised};
 use crate::file::sample::{BodySample, Sample};
 
 use Numbers::{Change, OfBody, OfScene, Part, SinceStart};
@@ -217,7 +217,7 @@ pub(crate) fn picture_stride(steps: u64) -> u64 {
 
 impl Output {
     /// The columns by their keys among the known ones, or the default.
-    pub(crate) fn columns(&self, known: &[Column], default: &[&str]) -> Result<Vec<Column>, Wrong> {
+    pub(crate) fn columns(&self, known: &[Column], default: &[&str]) -> Result<Vec<Column>, SpanMessage> {
         let find = |key: &str| known.iter().find(|column| column.key == key).cloned();
         let Some(keys) = &self.columns else { return Ok(default.iter().filter_map(|key| find(key)).collect()) };
         let column = |key: &Spanned<String>| {

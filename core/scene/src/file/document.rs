@@ -15,9 +15,9 @@ use crate::file::body::Kinetic;
 use crate::file::column::Column;
 use crate::file::effects::Table as _;
 use crate::file::group::Group;
-use crate::file::lagrangian::{Declared, take};
+use crate::file::lagrangian::{DeclaredTerm, take};
 use crate::file::method::kind;
-use crate::file::mistake::{Mistake, Wrong, place_of};
+use crate::file::mistake::{Mistake, SpanMessage, place_of};
 use crate::file::over_time::{self, OverTime};
 use crate::file::picture::{Curve, SpherePicture};
 use crate::file::scene::{Origin, Places, SceneFile};
@@ -27,7 +27,7 @@ use crate::file::words::in_files;
 
 /// The scene of a document without a sweep and an ensemble.
 pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<SceneFile, Mistake> {
-    let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
+    let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut rest = document.clone();
     let over_time = over_time::take(&mut rest, path).map_err(located)?;
     let mut on = None;
@@ -84,10 +84,10 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
 }
 
 /// Adds the terms of a file with a Lagrangian that has the kinetic energy, and finds the group.
-fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), Wrong> {
+fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage> {
     let own = || file.lagrangian.iter().chain(&file.force);
     let of_term = |place: &Range<usize>, error: LateError| (place.clone(), in_files(&error.to_string()));
-    let is_of_body = |one: &Declared| one.declaration.group() == "SO3";
+    let is_of_body = |one: &DeclaredTerm| one.declaration.group() == "SO3";
     if file.body.is_some() {
         if let Some(one) = file.lagrangian.iter().find(|one| one.declaration.has_kinetic) {
             let message = "this `lagrangian` has a kinetic energy, and the `body` another: leave one of both out";
@@ -115,7 +115,7 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), Wrong> {
     let forces = file.force.iter().map(|own| Ok(own.declaration));
     let terms = lagrangians.chain(library).chain(forces).collect::<Result<Vec<_>, _>>();
     let terms = terms.map_err(|error| of_term(&first, error))?;
-    let is_other = |one: &&Declared| one.declaration.factors != file.lagrangian[0].declaration.factors;
+    let is_other = |one: &&DeclaredTerm| one.declaration.factors != file.lagrangian[0].declaration.factors;
     if let Some(one) = own().find(is_other) {
         return Err((one.span.clone(), "the terms of a scene are on one group, and this one is on another".to_owned()));
     }
@@ -144,13 +144,13 @@ fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
 }
 
 /// Conflicts between keys that are valid by themselves.
-fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let of = [of_pace, of_orbit, of_density, of_method, of_picture];
     of.iter().find_map(|odds| odds(document, file))
 }
 
 /// Conflicts with a step or an accuracy.
-fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     if has(document, "run", "step") && has(document, "run", "accuracy") {
         return wrong(&["run", "accuracy"], "a run has either a `step` or an `accuracy`".to_owned());
@@ -182,7 +182,7 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
 }
 
 /// Conflicts of a picture with a group that has no sphere.
-fn of_picture(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+fn of_picture(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     if file.group.is_rotation() {
         return None;
     }
@@ -196,7 +196,7 @@ fn of_picture(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
 }
 
 /// Conflicts with effects that vary along an orbit.
-fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     if let Some(gradient) = &file.gravity_gradient {
         let is_given = [gradient.GM.is_some(), gradient.r.is_some()];
@@ -237,7 +237,7 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
 }
 
 /// The mistake of a parameter that can't have the values of its signal, or has none during the run.
-fn of_signal(one: &OverTime, file: &SceneFile) -> Option<Wrong> {
+fn of_signal(one: &OverTime, file: &SceneFile) -> Option<SpanMessage> {
     let mut scratch = file.clone();
     let (OverTime { table, key, span, .. }, signal) = (one, one.signal()?);
     let mut values = signal.values().chunks(signal.width());
@@ -261,7 +261,7 @@ fn of_signal(one: &OverTime, file: &SceneFile) -> Option<Wrong> {
 }
 
 /// Conflicts with a density of steps.
-fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let (has_a_pace, turns) = (file.paced().is_some(), file.changing().is_some());
     let beside = [
         (!has(document, "run", "step"), "the first `step`: give one in the place of `accuracy` and `steps_per_orbit`"),
@@ -275,7 +275,7 @@ fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
 }
 
 /// Conflicts with a method; those of a Lagrangian come first.
-fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<Wrong> {
+fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     let method = &file.run.method;
     if file.paced().is_some() {

@@ -8,7 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::file::effects::EFFECTS;
-use crate::file::mistake::Wrong;
+use crate::file::mistake::SpanMessage;
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Keys, dotted, ends};
 
@@ -122,7 +122,7 @@ impl Component {
 }
 
 /// The table's entries, read without making a member.
-pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, Wrong> {
+pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -> Result<SceneEnsemble, SpanMessage> {
     let DeValue::Table(inner) = table.get_ref() else { return Err((table.span(), "`ensemble` is a table".to_owned())) };
     let (path, text) = (path.to_owned(), text.to_owned());
     let mut ensemble = SceneEnsemble {
@@ -172,7 +172,7 @@ pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -
 }
 
 /// A key with the distribution of its value.
-fn axis((keys, value): (Keys, &Spanned<DeValue<'_>>)) -> Result<Axis, Wrong> {
+fn axis((keys, value): (Keys, &Spanned<DeValue<'_>>)) -> Result<Axis, SpanMessage> {
     if let Some(key) = keys.first().filter(|key| !drawable().any(|name| name == key.get_ref())) {
         let drawn: Vec<_> = drawable().map(|name| format!("`{name}`")).collect();
         return Err((key.span(), format!("an ensemble draws what is in {}", drawn.join(", "))));
@@ -206,7 +206,7 @@ fn leads_on(table: &DeTable<'_>) -> bool {
 /// The two keys of each distribution.
 const DISTRIBUTIONS: [[&str; 2]; 2] = [["from", "to"], ["mean", "deviation"]];
 
-fn drawn(table: &DeTable<'_>, span: &Range<usize>, name: String) -> Result<Draw, Wrong> {
+fn drawn(table: &DeTable<'_>, span: &Range<usize>, name: String) -> Result<Draw, SpanMessage> {
     let wrong = |span: Range<usize>| (span, DRAW.to_owned());
     let mut entries: Vec<_> = table.iter().collect();
     entries.sort_by_key(|(key, _)| key.span().start);

@@ -7,11 +7,11 @@ use liestep::mechanics::{Effect, Inertia};
 use liestep_late::numbers;
 use serde::Deserialize;
 
-use crate::file::orbit::{OnOrbit, Orbit, Parameter as _, Turning, TurningAir, TurningDirection, TurningField};
+use crate::file::orbit::{AirInTime, DirectionInTime, FieldInTime, OnOrbit, Orbit, Parameter as _, VectorInTime};
 use crate::file::quantity;
 use crate::file::quantity::{
     Acceleration, Damping, Direction, Force, GravitationalParameter, Length, MagneticGain, MagneticMoment, Mass,
-    Momentum, Positive, Scalar, Stiffness, Triple,
+    Momentum, PositiveScalar, Scalar, Stiffness, Triple,
 };
 
 /// An effect's parameters in a file.
@@ -32,40 +32,40 @@ macro_rules! effects {
     ($then:ident $($given:tt)*) => {
         $then! {
             { $($given)* }
-            gravity: GravityTable { m: Positive<Mass>, g: Scalar<Acceleration>, rho: Triple<Length>, up: Direction }
+            gravity: GravityTable { m: PositiveScalar<Mass>, g: Scalar<Acceleration>, rho: Triple<Length>, up: Direction }
                 => |_, _, p| -> Gravity {
                     Gravity { m: p.m.value, g: p.g.value, rho: p.rho.value, up: p.up.0 }
                 }
             gravity_gradient: GravityGradientTable {
-                GM: Option<Positive<GravitationalParameter>>, r: Option<Positive<Length>>, direction: TurningDirection
+                GM: Option<PositiveScalar<GravitationalParameter>>, r: Option<PositiveScalar<Length>>, direction: DirectionInTime
             }
                 => |J, t, p| -> GravityGradient {
                     let (GM, r) = match (p.direction, p.GM, p.r) {
-                        (Turning::Fixed(_), Some(GM), Some(r)) => (GM.value, r.value),
+                        (VectorInTime::Fixed(_), Some(GM), Some(r)) => (GM.value, r.value),
                         // Kepler's third law.
-                        (Turning::Turns(OnOrbit { orbit }), ..) => (orbit.rate() * orbit.rate(), 1.0),
+                        (VectorInTime::Turns(OnOrbit { orbit }), ..) => (orbit.rate() * orbit.rate(), 1.0),
                         // A gravity gradient without these values is refused when the file is read.
                         _ => (f64::NAN, f64::NAN),
                     };
                     GravityGradient { GM, r, J: *J, direction: p.direction.at(t) }
                 }
-            dipole: DipoleTable { moment: Triple<MagneticMoment>, field: TurningField }
+            dipole: DipoleTable { moment: Triple<MagneticMoment>, field: FieldInTime }
                 => |_, t, p| -> Dipole { Dipole { moment: p.moment.value, field: p.field.at(t) } }
             spring: SpringTable {
-                k: Positive<Stiffness>, length: Scalar<Length>, at: Triple<Length>, anchor: Triple<Length>
+                k: PositiveScalar<Stiffness>, length: Scalar<Length>, at: Triple<Length>, anchor: Triple<Length>
             }
                 => |_, _, p| -> Spring {
                     Spring { k: p.k.value, length: p.length.value, at: p.at.value, anchor: p.anchor.value }
                 }
             rotor: RotorTable { spin: Triple<Momentum> } => |_, _, p| -> Rotor { Rotor { spin: p.spin.value } }
-            drag: DragTable { c: Positive<Damping> } => |J, _, p| -> Drag { Drag { c: p.c.value, J: *J } }
-            air_drag: AirDragTable { c: Positive<Damping>, air: TurningAir }
+            drag: DragTable { c: PositiveScalar<Damping> } => |J, _, p| -> Drag { Drag { c: p.c.value, J: *J } }
+            air_drag: AirDragTable { c: PositiveScalar<Damping>, air: AirInTime }
                 => |J, t, p| -> AirDrag { AirDrag { c: p.c.value, air: p.air.at(t), J: *J } }
             torque: TorqueTable { torque: Triple<quantity::Torque> }
                 => |_, _, p| -> Torque { Torque { torque: p.torque.value } }
             thrust: ThrustTable { at: Triple<Length>, thrust: Triple<Force> }
                 => |_, _, p| -> Thrust { Thrust { at: p.at.value, thrust: p.thrust.value } }
-            magnetic_damping: MagneticDampingTable { k: Positive<MagneticGain>, field: TurningField }
+            magnetic_damping: MagneticDampingTable { k: PositiveScalar<MagneticGain>, field: FieldInTime }
                 => |J, t, p| -> MagneticDamping {
                     MagneticDamping { k: p.k.value, field: p.field.at(t), J: *J }
                 }
@@ -75,14 +75,14 @@ macro_rules! effects {
 pub(crate) use effects;
 
 /// The facts about an effect that don't depend on a file.
-pub(crate) struct Listed {
+pub(crate) struct EffectEntry {
     /// The effect's table in a file.
     pub(crate) key: &'static str,
     /// The effect's derivation, and the text of its declaration.
     pub(crate) derived: (&'static str, &'static str),
 }
 
-impl Listed {
+impl EffectEntry {
     /// The name with this separator between its words.
     pub(crate) fn name(&self, between: &str) -> String {
         self.key.replace('_', between)
@@ -127,7 +127,7 @@ macro_rules! tables {
         )+
 
         /// All effects, in the order of the list.
-        pub(crate) const EFFECTS: &[Listed] = &[$(Listed {
+        pub(crate) const EFFECTS: &[EffectEntry] = &[$(EffectEntry {
             key: stringify!($name),
             derived: (<$effect as Effect>::DERIVATION, <$effect as Effect>::DECLARATION),
         }),+];

@@ -8,7 +8,7 @@ use toml::de::{DeArray, DeTable, DeValue};
 use crate::file::document::scene;
 use crate::file::draws::{Axis, Component, DRAW, SceneEnsemble, Spread, parts};
 use crate::file::event::{Event, Quantity};
-use crate::file::mistake::{Mistake, Wrong, place_of};
+use crate::file::mistake::{Mistake, SpanMessage, place_of};
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Document, set, span};
 
@@ -41,7 +41,7 @@ impl SceneEnsemble {
 
     /// The scene read from tables in which these numbers are written.
     fn written(&self, numbers: &[f64]) -> Result<SceneFile, Mistake> {
-        let located = |(span, message): Wrong| Mistake::at(&self.path, place_of(&self.text, &span), message);
+        let located = |(span, message): SpanMessage| Mistake::at(&self.path, place_of(&self.text, &span), message);
         let mut numbers = numbers.iter().copied();
         let mut text = |part: &Component| part.text(&self.text, &mut numbers);
         let texts: Vec<Vec<String>> =
@@ -71,7 +71,7 @@ impl SceneEnsemble {
 }
 
 /// The mistake of a file with parameters over time, which members don't have.
-fn over_time(file: &SceneFile) -> Option<Wrong> {
+fn over_time(file: &SceneFile) -> Option<SpanMessage> {
     let message = "the members of an ensemble have no parameters over time: leave them out, or `ensemble`";
     file.over_time.first().map(|one| (one.span.clone(), message.to_owned()))
 }
@@ -83,7 +83,7 @@ pub(crate) fn read(
     table: &Spanned<DeValue<'_>>,
     file: &SceneFile,
 ) -> Result<SceneEnsemble, Mistake> {
-    let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
+    let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut ensemble = parts((path, text), table).map_err(located)?;
     let wrong = |keys: &[&str], message: String| Err(located((span(document, keys), message)));
     if file.asks_for_accuracy() {
@@ -145,7 +145,7 @@ pub(crate) fn read(
     let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
     ensemble.tables = tables.into_inner().into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
     ensemble.like = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));
-    // Wrong units and keys are found by reading two members.
+    // SpanMessage units and keys are found by reading two members.
     for end in [true, false] {
         let value = |(_, spread)| match spread {
             Spread::Uniform { from: value, .. } if end => value,

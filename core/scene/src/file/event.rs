@@ -7,8 +7,8 @@ use toml::Spanned;
 
 use crate::file::column::Column;
 use crate::file::group::Group;
-use crate::file::mistake::{Wrong, advised};
-use crate::file::quantity::{Angle, Any, Energy, Number, Positive, Rate, Scalar};
+use crate::file::mistake::{SpanMessage, advised};
+use crate::file::quantity::{Angle, Any, Energy, Number, PositiveScalar, Rate, Scalar};
 
 /// An event to be detected along a run: a quantity passes a value.
 #[derive(Clone, Debug, Deserialize)]
@@ -48,7 +48,7 @@ pub(crate) enum Direction {
 struct EventTable {
     name: String,
     tilt: Option<Scalar<Angle>>,
-    speed: Option<Positive<Rate>>,
+    speed: Option<PositiveScalar<Rate>>,
     energy: Option<Scalar<Energy>>,
     velocity_x: Option<Scalar<Rate>>,
     velocity_y: Option<Scalar<Rate>>,
@@ -100,7 +100,7 @@ impl TryFrom<EventTable> for Event {
 
 impl Event {
     /// Finds the place of a column on a group, or refuses the quantity of a body on another one.
-    pub(crate) fn placed(&mut self, group: &Group, at: &dyn Fn() -> Range<usize>) -> Result<(), Wrong> {
+    pub(crate) fn placed(&mut self, group: &Group, at: &dyn Fn() -> Range<usize>) -> Result<(), SpanMessage> {
         let Some(name) = &self.column else {
             let is_known = group.is_rotation() || matches!(self.quantity, Quantity::Energy(_));
             let message = "only a body on `SO3` has this quantity: on another group an event has a `column` with a \

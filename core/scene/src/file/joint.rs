@@ -7,9 +7,9 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::mistake::Wrong;
+use crate::file::mistake::SpanMessage;
 use crate::file::quantity::{
-    Angle, Damping, Direction, Force, Length, LinearDamping, Positive, Quantity, Rate, Scalar, Speed, Stiffness,
+    Angle, Damping, Direction, Force, Length, LinearDamping, PositiveScalar, Quantity, Rate, Scalar, Speed, Stiffness,
     Torque, Triple, TurningStiffness, short,
 };
 use crate::file::start::Attitude;
@@ -142,7 +142,7 @@ pub(crate) struct JointTable {
     at: [Triple<Length>; 2],
     axes: Option<Spanned<[Direction; 2]>>,
     zero: Option<Spanned<Attitude>>,
-    length: Option<Spanned<Positive<Length>>>,
+    length: Option<Spanned<PositiveScalar<Length>>>,
     damping: Value,
     stiffness: Value,
     rest: Value,
@@ -162,20 +162,20 @@ type Value = Option<Spanned<toml::Value>>;
 #[derive(Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FrictionTable {
-    torque: Positive<Torque>,
+    torque: PositiveScalar<Torque>,
     /// The rate below which friction is viscous.
-    below: Positive<Rate>,
+    below: PositiveScalar<Rate>,
 }
 
 /// The number of a value with the units of a quantity.
-fn read<Q: Quantity>(value: &Value) -> Result<Option<f64>, Wrong> {
+fn read<Q: Quantity>(value: &Value) -> Result<Option<f64>, SpanMessage> {
     let Some(value) = value else { return Ok(None) };
     let read = Scalar::<Q>::deserialize(value.get_ref().clone());
     read.map(|scalar| Some(scalar.value)).map_err(|error| (value.span(), error.message().to_owned()))
 }
 
 /// A number above zero.
-fn positive<Q: Quantity>(value: &Value) -> Result<Option<f64>, Wrong> {
+fn positive<Q: Quantity>(value: &Value) -> Result<Option<f64>, SpanMessage> {
     let number = read::<Q>(value)?;
     match (number, value) {
         (Some(number), Some(value)) if number <= 0.0 => Err((value.span(), "must be above zero".to_owned())),
@@ -188,7 +188,7 @@ const ALONG: f64 = 1e-6;
 
 impl JointTable {
     /// Refuses keys that the kind doesn't have.
-    fn check(&self) -> Result<(), Wrong> {
+    fn check(&self) -> Result<(), SpanMessage> {
         let kind = *self.kind.get_ref();
         let name = kind.name();
         let refuse = |span: Range<usize>, why: String| Err((span, why));
@@ -252,7 +252,7 @@ impl JointTable {
     }
 
     /// The attitude at the angle zero: that which is given, or by the least turn that makes the axes parallel.
-    fn attitude(&self, axes: &[Vector3<f64>; 2]) -> Result<Matrix3<f64>, Wrong> {
+    fn attitude(&self, axes: &[Vector3<f64>; 2]) -> Result<Matrix3<f64>, SpanMessage> {
         let kind = *self.kind.get_ref();
         let given = self.zero.as_ref().map(|zero| *zero.get_ref().rotation().to_rotation_matrix().matrix());
         if !kind.has_one_axis() {
@@ -284,13 +284,14 @@ impl JointTable {
     }
 
     /// The joint; if the second of its bodies is space, with both exchanged.
-    pub(crate) fn joint(self, is_swapped: bool) -> Result<Joint, Wrong> {
+    pub(crate) fn joint(self, is_swapped: bool) -> Result<Joint, SpanMessage> {
         self.check()?;
         let kind = *self.kind.get_ref();
         let axes = self.axes.as_ref().map_or([Vector3::zeros(); 2], |axes| axes.get_ref().map(|axis| axis.0));
         let zero = self.attitude(&axes)?;
         let is_slider = kind == Kind::Slider;
-        let by_kind = |turn: Result<_, Wrong>, shift: Result<_, Wrong>| if is_slider { shift } else { turn };
+        let by_kind =
+            |turn: Result<_, SpanMessage>, shift: Result<_, SpanMessage>| if is_slider { shift } else { turn };
         let terms = Terms {
             damping: by_kind(positive::<Damping>(&self.damping), positive::<LinearDamping>(&self.damping))?,
             stiffness: by_kind(positive::<TurningStiffness>(&self.stiffness), positive::<Stiffness>(&self.stiffness))?,

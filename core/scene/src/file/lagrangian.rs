@@ -10,7 +10,7 @@ use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-use crate::file::mistake::Wrong;
+use crate::file::mistake::SpanMessage;
 use crate::file::parameter::{Parameter, in_value};
 use crate::file::quantity::{Number, Scalar};
 use crate::file::tables::Document;
@@ -24,7 +24,7 @@ pub(crate) type Backend = liestep_late::Interpreter;
 
 /// A Lagrangian or a force, with the numbers of its parameters.
 #[derive(Clone)]
-pub(crate) struct Declared {
+pub(crate) struct DeclaredTerm {
     pub(crate) declaration: &'static Declaration,
     pub(crate) numbers: Vec<f64>,
     pub(crate) has_a_pace: bool,
@@ -34,7 +34,7 @@ pub(crate) struct Declared {
     pub(crate) span: Range<usize>,
 }
 
-impl Declared {
+impl DeclaredTerm {
     /// The inertia of a body's continuous limit at the identity attitude.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
         let whole =
@@ -62,7 +62,7 @@ const ENERGY: &str = "E_0_of_the_start";
 
 /// Deserialises nothing, as [`take`] removes the tables first. Messages that list all keys need the key.
 #[allow(clippy::unnecessary_wraps)] // serde requires a `Result`
-pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Vec<Declared>, D::Error> {
+pub(crate) fn taken<'de, D: Deserializer<'de>>(_: D) -> Result<Vec<DeclaredTerm>, D::Error> {
     Ok(Vec::new())
 }
 
@@ -76,7 +76,11 @@ pub(crate) struct Place {
 
 /// Removes the tables of Lagrangians or of forces from a document, and reads them. A table without a group is on the
 /// group of the ones before, and the first one on SO(3).
-pub(crate) fn take(document: &mut Document<'_>, role: Role, on: &mut Option<Place>) -> Result<Vec<Declared>, Wrong> {
+pub(crate) fn take(
+    document: &mut Document<'_>,
+    role: Role,
+    on: &mut Option<Place>,
+) -> Result<Vec<DeclaredTerm>, SpanMessage> {
     let name = if role == Role::Force { "force" } else { "lagrangian" };
     let Some((key, tables)) = document.get_mut().remove_entry(name) else { return Ok(Vec::new()) };
     let one = |table: &Spanned<DeValue<'_>>, span: Range<usize>, on: &mut Option<Place>| match table.get_ref() {
@@ -109,7 +113,7 @@ struct Text<'t, 'a> {
 }
 
 impl<'t, 'a> Text<'t, 'a> {
-    fn of(table: &'t DeTable<'a>, span: Range<usize>, role: Role, on: &mut Option<Place>) -> Result<Self, Wrong> {
+    fn of(table: &'t DeTable<'a>, span: Range<usize>, role: Role, on: &mut Option<Place>) -> Result<Self, SpanMessage> {
         let own = [table.get("group"), table.get("generators")];
         let place = match (own, on.clone()) {
             ([None, None], Some(before)) => before,
@@ -139,7 +143,7 @@ impl<'t, 'a> Text<'t, 'a> {
     }
 
     /// The text of a key, with its place.
-    fn text(&self, key: &str) -> Result<Option<(String, Range<usize>)>, Wrong> {
+    fn text(&self, key: &str) -> Result<Option<(String, Range<usize>)>, SpanMessage> {
         let Some(value) = self.table.get(key) else { return Ok(None) };
         match value.get_ref() {
             DeValue::String(text) => Ok(Some((text.to_string(), value.span()))),
@@ -148,7 +152,7 @@ impl<'t, 'a> Text<'t, 'a> {
     }
 
     /// Adds `key(a, b)` for the names of a product's factors, and `key = a` for one.
-    fn read_names(&mut self, key: &str, default: Option<&str>) -> Result<(), Wrong> {
+    fn read_names(&mut self, key: &str, default: Option<&str>) -> Result<(), SpanMessage> {
         let (names, at) = match self.table.get(key) {
             None => (default.map(str::to_owned).into_iter().collect(), self.span.clone()),
             Some(value) => (names(value, key)?, value.span()),
@@ -164,7 +168,7 @@ impl<'t, 'a> Text<'t, 'a> {
         Ok(())
     }
 
-    fn read_head(&mut self) -> Result<(), Wrong> {
+    fn read_head(&mut self) -> Result<(), SpanMessage> {
         if let Some((pace, at)) = self.text("pace")?.filter(|_| self.role != Role::Force) {
             // The energy comes first, so that any number of advected vectors can follow.
             self.line(&format!("given(E_0 = {ENERGY}), pace = {{ {pace} }},"), at);
@@ -194,7 +198,7 @@ impl<'t, 'a> Text<'t, 'a> {
         Ok(())
     }
 
-    fn read_parameters(&mut self) -> Result<(), Wrong> {
+    fn read_parameters(&mut self) -> Result<(), SpanMessage> {
         let known: &[&str] = match self.role {
             Role::Force => &["group", "generators", "work", "displacement", "advected"],
             _ => &["group", "generators", "l_d", "l", "velocity", "discretise", "pace", "advected"],
@@ -215,7 +219,7 @@ impl<'t, 'a> Text<'t, 'a> {
         Ok(())
     }
 
-    fn declared(self) -> Result<Declared, Wrong> {
+    fn declared(self) -> Result<DeclaredTerm, SpanMessage> {
         let lines: Vec<&str> = self.lines.iter().map(|line| line.text.as_str()).collect();
         let fields: Vec<String> = self.parameters.iter().map(|one| format!("{}: {}", one.name, one.kind)).collect();
         let (attribute, name) =
@@ -224,11 +228,11 @@ impl<'t, 'a> Text<'t, 'a> {
         let declaration = Declaration::parse(&whole).map_err(|error| self.mistake(error))?;
         let numbers = self.parameters.into_iter().flat_map(|one| one.numbers).collect();
         let (increments, has_a_pace, span) = (self.increments, self.has_a_pace, self.span);
-        Ok(Declared { declaration, numbers, has_a_pace, increments, span })
+        Ok(DeclaredTerm { declaration, numbers, has_a_pace, increments, span })
     }
 
     /// The first mistake of the text, with its place in the file and in the words of files.
-    fn mistake(&self, error: LateError) -> Wrong {
+    fn mistake(&self, error: LateError) -> SpanMessage {
         let LateError::Mistakes(mistakes) = error else { return (self.span.clone(), in_files(&error.to_string())) };
         let Some(first) = mistakes.into_iter().next() else { return (self.span.clone(), KEYS.to_owned()) };
         (self.place(&first), in_files(&first.message))
@@ -279,7 +283,7 @@ fn is_name(text: &str) -> bool {
 }
 
 /// The names in a list, or in a text with commas.
-fn names(value: &Spanned<DeValue<'_>>, key: &str) -> Result<Vec<String>, Wrong> {
+fn names(value: &Spanned<DeValue<'_>>, key: &str) -> Result<Vec<String>, SpanMessage> {
     let wrong = |span| (span, format!("`{key}` is a name, or a list of names for the factors of a product"));
     let name = |text: &str, span: Range<usize>| {
         let text = text.trim();
@@ -295,7 +299,10 @@ fn names(value: &Spanned<DeValue<'_>>, key: &str) -> Result<Vec<String>, Wrong> 
 }
 
 /// The group of a table: `= SE3` with its generators, or `(F = SO3, d = R3)`.
-fn placed(group: Option<&Spanned<DeValue<'_>>>, generators: Option<&Spanned<DeValue<'_>>>) -> Result<Place, Wrong> {
+fn placed(
+    group: Option<&Spanned<DeValue<'_>>>,
+    generators: Option<&Spanned<DeValue<'_>>>,
+) -> Result<Place, SpanMessage> {
     let name = |value: &Spanned<DeValue<'_>>| match value.get_ref().as_str() {
         Some(name) if is_name(name) => Ok(name.to_owned()),
         _ => Err((value.span(), GROUP.to_owned())),
@@ -334,7 +341,7 @@ fn placed(group: Option<&Spanned<DeValue<'_>>>, generators: Option<&Spanned<DeVa
 }
 
 /// The argument `advected(w = up, Q = F_2.seen_from(F_1)),`.
-fn advected(value: &Spanned<DeValue<'_>>) -> Result<String, Wrong> {
+fn advected(value: &Spanned<DeValue<'_>>) -> Result<String, SpanMessage> {
     let wrong = |span| (span, "`advected` are texts by names, as `{ w = \"up\" }`".to_owned());
     let DeValue::Table(all) = value.get_ref() else { return Err(wrong(value.span())) };
     let mut all: Vec<_> = all.iter().collect();
@@ -343,6 +350,6 @@ fn advected(value: &Spanned<DeValue<'_>>) -> Result<String, Wrong> {
         let text = field.get_ref().as_str().ok_or_else(|| wrong(field.span()))?;
         Ok(format!("{} = {text}", name.get_ref()))
     };
-    let pairs = all.into_iter().map(pair).collect::<Result<Vec<_>, Wrong>>()?;
+    let pairs = all.into_iter().map(pair).collect::<Result<Vec<_>, SpanMessage>>()?;
     Ok(if pairs.is_empty() { String::new() } else { format!("advected({}),", pairs.join(", ")) })
 }

@@ -21,7 +21,7 @@ pub struct Mistake {
 }
 
 /// The place of a mistake in the text, and its message.
-pub(crate) type Wrong = (Range<usize>, String);
+pub(crate) type SpanMessage = (Range<usize>, String);
 
 /// The subject of a mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

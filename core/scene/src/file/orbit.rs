@@ -13,7 +13,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
 
 use crate::file::quantity::{
-    Angle, Direction, Duration, FluxDensity, Number, Positive, Quantity, Rate, Scalar, Triple, in_si, short,
+    Angle, Direction, Duration, FluxDensity, Number, PositiveScalar, Quantity, Rate, Scalar, Triple, in_si, short,
 };
 
 /// A closed orbit about a distant mass, by Kepler's laws.
@@ -32,7 +32,7 @@ pub(crate) struct Orbit {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct OrbitTable {
-    period: Positive<Duration>,
+    period: PositiveScalar<Duration>,
     /// Axis of the motion, which is right-handed about it.
     normal: Direction,
     eccentricity: Option<Scalar<Number>>,
@@ -116,17 +116,17 @@ fn eccentric_anomaly(mean: f64, e: f64) -> f64 {
 
 /// A vector that is constant, or a table that determines it as a function of time.
 #[derive(Clone, Copy)]
-pub(crate) enum Turning<F, T> {
+pub(crate) enum VectorInTime<F, T> {
     Fixed(F),
     Turns(T),
 }
 
 /// The direction of the mass.
-pub(crate) type TurningDirection = Turning<Direction, OnOrbit>;
+pub(crate) type DirectionInTime = VectorInTime<Direction, OnOrbit>;
 /// The angular velocity of the air.
-pub(crate) type TurningAir = Turning<Triple<Rate>, OnOrbit>;
+pub(crate) type AirInTime = VectorInTime<Triple<Rate>, OnOrbit>;
 /// A magnetic flux density.
-pub(crate) type TurningField = Turning<Triple<FluxDensity>, DipoleField>;
+pub(crate) type FieldInTime = VectorInTime<Triple<FluxDensity>, DipoleField>;
 
 #[derive(Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -143,7 +143,7 @@ pub(crate) struct DipoleField {
     equator: Triple<FluxDensity>,
 }
 
-impl Turning<Direction, OnOrbit> {
+impl VectorInTime<Direction, OnOrbit> {
     /// The direction of the mass at a time, s, with the length `(a/r)^{3/2}`: a gravity gradient, quadratic in it,
     /// falls with the third power of the distance.
     pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
@@ -158,7 +158,7 @@ impl Turning<Direction, OnOrbit> {
     }
 }
 
-impl Turning<Triple<Rate>, OnOrbit> {
+impl VectorInTime<Triple<Rate>, OnOrbit> {
     /// The angular velocity at a time, s, in space, rad/s. Along an orbit it is that of the direction of the mass,
     /// `n √(1 − e²) (a/r)²` by Kepler's second law.
     pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
@@ -173,7 +173,7 @@ impl Turning<Triple<Rate>, OnOrbit> {
     }
 }
 
-impl Turning<Triple<FluxDensity>, DipoleField> {
+impl VectorInTime<Triple<FluxDensity>, DipoleField> {
     /// The flux density at a time, s, in space, T: `(a/r)³ (B − 3 (B·r̂) r̂)`, with `B` at the equator.
     pub(crate) fn at(&self, time: f64) -> Vector3<f64> {
         match self {
@@ -212,7 +212,7 @@ impl<Q: Quantity> Parameter for Scalar<Q> {
     }
 }
 
-impl<Q: Quantity> Parameter for Positive<Q> {
+impl<Q: Quantity> Parameter for PositiveScalar<Q> {
     fn put(&mut self, _: usize, number: f64, unit: &str) -> bool {
         put(Some(&mut self.value), in_si::<Q>(number, unit).filter(|&number| number > 0.0))
     }
@@ -227,19 +227,19 @@ impl<Q: Quantity> Parameter for Triple<Q> {
 impl<Q> Parameter for Option<Q> {}
 impl Parameter for Direction {}
 
-impl<F> Parameter for Turning<F, OnOrbit> {
+impl<F> Parameter for VectorInTime<F, OnOrbit> {
     fn orbit(&self) -> Option<&Orbit> {
         if let Self::Turns(OnOrbit { orbit }) = self { Some(orbit) } else { None }
     }
 }
 
-impl Parameter for TurningField {
+impl Parameter for FieldInTime {
     fn orbit(&self) -> Option<&Orbit> {
         if let Self::Turns(DipoleField { orbit, .. }) = self { Some(orbit) } else { None }
     }
 }
 
-impl<'de, F: Deserialize<'de>, T: Deserialize<'de>> Deserialize<'de> for Turning<F, T> {
+impl<'de, F: Deserialize<'de>, T: Deserialize<'de>> Deserialize<'de> for VectorInTime<F, T> {
     fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
         source.deserialize_any(ListOrTable(PhantomData))
     }
@@ -248,17 +248,17 @@ impl<'de, F: Deserialize<'de>, T: Deserialize<'de>> Deserialize<'de> for Turning
 struct ListOrTable<F, T>(PhantomData<(F, T)>);
 
 impl<'de, F: Deserialize<'de>, T: Deserialize<'de>> Visitor<'de> for ListOrTable<F, T> {
-    type Value = Turning<F, T>;
+    type Value = VectorInTime<F, T>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("three numbers, or a table with an `orbit`")
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
-        F::deserialize(SeqAccessDeserializer::new(list)).map(Turning::Fixed)
+        F::deserialize(SeqAccessDeserializer::new(list)).map(VectorInTime::Fixed)
     }
 
     fn visit_map<A: MapAccess<'de>>(self, table: A) -> Result<Self::Value, A::Error> {
-        T::deserialize(MapAccessDeserializer::new(table)).map(Turning::Turns)
+        T::deserialize(MapAccessDeserializer::new(table)).map(VectorInTime::Turns)
     }
 }

@@ -11,8 +11,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use crate::file::effects::EFFECTS;
-use crate::file::mistake::Wrong;
-use crate::file::orbit::{Orbit, Parameter as _, TurningDirection, TurningField};
+use crate::file::mistake::SpanMessage;
+use crate::file::orbit::{DirectionInTime, FieldInTime, Orbit, Parameter as _};
 use crate::file::parameter::in_value;
 use crate::file::quantity::{Any, Duration, Scalar, in_si};
 use crate::file::tables::Document;
@@ -32,8 +32,8 @@ pub(crate) struct OverTime {
 #[derive(Clone)]
 enum Change {
     Signal(Signal),
-    Direction(TurningDirection),
-    Field(TurningField),
+    Direction(DirectionInTime),
+    Field(FieldInTime),
 }
 
 /// A signal in a file.
@@ -61,7 +61,7 @@ const KEYS: &str = "a signal has `times`, `values` and `between`, \"steps\" or \
                     a `csv`, the name of its column of the `time` and its `columns`";
 
 /// Replaces parameters over time by their values at the start, and returns them. Files are looked for beside the scene.
-pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverTime>, Wrong> {
+pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverTime>, SpanMessage> {
     let mut all = Vec::new();
     for (name, tables) in document.get_mut().iter_mut() {
         let name = name.get_ref().to_string();
@@ -89,7 +89,7 @@ fn of_table(
     table: &mut DeTable<'_>,
     path: &Path,
     all: &mut Vec<OverTime>,
-) -> Result<(), Wrong> {
+) -> Result<(), SpanMessage> {
     for (key, value) in table.iter_mut() {
         let DeValue::Table(inner) = value.get_ref() else { continue };
         let has = |key: &str| inner.get(key).is_some();
@@ -99,9 +99,9 @@ fn of_table(
         } else if is_own && has("orbit") {
             let wrong = |error| in_value(value, &error);
             if has("equator") {
-                Change::Field(TurningField::deserialize(source()).map_err(wrong)?)
+                Change::Field(FieldInTime::deserialize(source()).map_err(wrong)?)
             } else {
-                Change::Direction(TurningDirection::deserialize(source()).map_err(wrong)?)
+                Change::Direction(DirectionInTime::deserialize(source()).map_err(wrong)?)
             }
         } else {
             continue;
@@ -120,7 +120,7 @@ fn of_table(
     Ok(())
 }
 
-fn signal(value: &Spanned<DeValue<'_>>, path: &Path) -> Result<Signal, Wrong> {
+fn signal(value: &Spanned<DeValue<'_>>, path: &Path) -> Result<Signal, SpanMessage> {
     let wrong = |message: String| (value.span(), message);
     let source = ValueDeserializer::from(value.clone());
     let table = SignalTable::deserialize(source).map_err(|error| in_value(value, &error))?;
@@ -156,7 +156,7 @@ fn signal(value: &Spanned<DeValue<'_>>, path: &Path) -> Result<Signal, Wrong> {
 }
 
 /// The numbers of each value.
-fn listed(signal: &Spanned<DeValue<'_>>) -> Result<Vec<Vec<f64>>, Wrong> {
+fn listed(signal: &Spanned<DeValue<'_>>) -> Result<Vec<Vec<f64>>, SpanMessage> {
     let Some(values) = signal.get_ref().get("values") else { return Ok(Vec::new()) };
     let (source, wrong) = (ValueDeserializer::from(values.clone()), |error| in_value(values, &error));
     let are_vectors =

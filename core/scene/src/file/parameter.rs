@@ -7,8 +7,8 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error, ValueDeserializer};
 
-use crate::file::body::{Full, Moments};
-use crate::file::mistake::{Wrong, advised};
+use crate::file::body::{InertiaRows, Moments};
+use crate::file::mistake::{SpanMessage, advised};
 use crate::file::quantity::{Any, Scalar};
 
 /// A parameter: its name, its type in the declaration, and its numbers, those of a matrix row by row.
@@ -26,7 +26,7 @@ const TABLES: &str = "a table is an inertia, `{ moments = [x, y, z] }` or `{ ten
                       tensor, `{ covariant = [[…], …] }`, `{ mixed = [[…], …] }`";
 
 /// Numbers with the shape in which they are written.
-struct Shaped {
+struct NumberArray {
     /// The number of rows, and whether they are those of a square matrix; no rows for a number alone.
     rows: usize,
     is_matrix: bool,
@@ -35,13 +35,13 @@ struct Shaped {
 
 impl Parameter {
     /// The parameter of a key.
-    pub(crate) fn of(name: &str, value: &Spanned<DeValue<'_>>) -> Result<Self, Wrong> {
+    pub(crate) fn of(name: &str, value: &Spanned<DeValue<'_>>) -> Result<Self, SpanMessage> {
         let (kind, numbers) = match value.get_ref() {
             DeValue::Table(table) => typed(name, table, value)?,
-            _ => match shaped(value)? {
-                Shaped { rows: 0, numbers, .. } => ("f64".to_owned(), numbers),
-                Shaped { rows, is_matrix: true, numbers } => (format!("SMatrix<f64, {rows}, {rows}>"), numbers),
-                Shaped { rows, numbers, .. } => (format!("SVector<f64, {rows}>"), numbers),
+            _ => match array(value)? {
+                NumberArray { rows: 0, numbers, .. } => ("f64".to_owned(), numbers),
+                NumberArray { rows, is_matrix: true, numbers } => (format!("SMatrix<f64, {rows}, {rows}>"), numbers),
+                NumberArray { rows, numbers, .. } => (format!("SVector<f64, {rows}>"), numbers),
             },
         };
         Ok(Self { name: name.to_owned(), kind, numbers })
@@ -49,7 +49,7 @@ impl Parameter {
 }
 
 /// The type and the numbers of a parameter that is a table.
-fn typed(name: &str, table: &DeTable<'_>, value: &Spanned<DeValue<'_>>) -> Result<(String, Vec<f64>), Wrong> {
+fn typed(name: &str, table: &DeTable<'_>, value: &Spanned<DeValue<'_>>) -> Result<(String, Vec<f64>), SpanMessage> {
     let wrong = |span: Range<usize>| Err((span, TABLES.to_owned()));
     let Some((key, inner)) = CARRIED.iter().find_map(|key| table.get_key_value(*key)) else {
         let is_known = |key: &str| ["moments", "tensor"].contains(&key);
@@ -68,7 +68,7 @@ fn typed(name: &str, table: &DeTable<'_>, value: &Spanned<DeValue<'_>>) -> Resul
     if let Some((other, _)) = table.iter().find(|(other, _)| other.get_ref() != key.get_ref()) {
         return wrong(other.span());
     }
-    let Shaped { rows, is_matrix, numbers } = shaped(inner)?;
+    let NumberArray { rows, is_matrix, numbers } = array(inner)?;
     let kind = match (key.get_ref().as_ref(), is_matrix) {
         ("point", false) if (1..4).contains(&rows) => format!("Point{rows}<f64>"),
         ("contravariant", false) if rows > 0 => format!("ContravariantVector<f64, {rows}>"),
@@ -81,7 +81,7 @@ fn typed(name: &str, table: &DeTable<'_>, value: &Spanned<DeValue<'_>>) -> Resul
 }
 
 /// A number, a vector or a square matrix.
-fn shaped(value: &Spanned<DeValue<'_>>) -> Result<Shaped, Wrong> {
+fn array(value: &Spanned<DeValue<'_>>) -> Result<NumberArray, SpanMessage> {
     let source = || ValueDeserializer::from(value.clone());
     let wrong = |error: Error| in_value(value, &error);
     let numbers = |list: &[Scalar<Any>]| list.iter().map(|number| number.value).collect::<Vec<f64>>();
@@ -95,22 +95,22 @@ fn shaped(value: &Spanned<DeValue<'_>>) -> Result<Shaped, Wrong> {
                     format!("a matrix is square: {rows} rows have {rows} numbers each, and this {}", row.len());
                 return Err((place.span(), message));
             }
-            Ok(Shaped { rows, is_matrix: true, numbers: matrix.iter().flat_map(|row| numbers(row)).collect() })
+            Ok(NumberArray { rows, is_matrix: true, numbers: matrix.iter().flat_map(|row| numbers(row)).collect() })
         }
         DeValue::Array(_) => {
             let vector = Vec::<Scalar<Any>>::deserialize(source()).map_err(wrong)?;
-            Ok(Shaped { rows: vector.len(), is_matrix: false, numbers: numbers(&vector) })
+            Ok(NumberArray { rows: vector.len(), is_matrix: false, numbers: numbers(&vector) })
         }
         _ => {
             let number = Scalar::<Any>::deserialize(source()).map_err(wrong)?;
-            Ok(Shaped { rows: 0, is_matrix: false, numbers: vec![number.value] })
+            Ok(NumberArray { rows: 0, is_matrix: false, numbers: vec![number.value] })
         }
     }
 }
 
 /// The numbers of a list of this many numbers; a list of one may be a number alone.
-pub(crate) fn list(value: &Spanned<DeValue<'_>>, what: &str, length: usize) -> Result<Vec<f64>, Wrong> {
-    let Shaped { rows, is_matrix, numbers } = shaped(value)?;
+pub(crate) fn list(value: &Spanned<DeValue<'_>>, what: &str, length: usize) -> Result<Vec<f64>, SpanMessage> {
+    let NumberArray { rows, is_matrix, numbers } = array(value)?;
     if !is_matrix && numbers.len() == length && (rows > 0 || length == 1) {
         return Ok(numbers);
     }
@@ -119,8 +119,8 @@ pub(crate) fn list(value: &Spanned<DeValue<'_>>, what: &str, length: usize) -> R
 }
 
 /// The entries of a square matrix of this many rows, row by row.
-pub(crate) fn matrix(value: &Spanned<DeValue<'_>>, what: &str, expected: usize) -> Result<Vec<f64>, Wrong> {
-    let Shaped { rows, is_matrix, numbers } = shaped(value)?;
+pub(crate) fn matrix(value: &Spanned<DeValue<'_>>, what: &str, expected: usize) -> Result<Vec<f64>, SpanMessage> {
+    let NumberArray { rows, is_matrix, numbers } = array(value)?;
     if is_matrix && rows == expected {
         return Ok(numbers);
     }
@@ -128,7 +128,7 @@ pub(crate) fn matrix(value: &Spanned<DeValue<'_>>, what: &str, expected: usize) 
 }
 
 /// The mistake of a value, with the place that the reader names.
-pub(crate) fn in_value(value: &Spanned<DeValue<'_>>, error: &Error) -> Wrong {
+pub(crate) fn in_value(value: &Spanned<DeValue<'_>>, error: &Error) -> SpanMessage {
     (error.span().unwrap_or_else(|| value.span()), advised(error.message()))
 }
 
@@ -137,7 +137,7 @@ pub(crate) fn in_value(value: &Spanned<DeValue<'_>>, error: &Error) -> Wrong {
 #[serde(deny_unknown_fields)]
 struct OfInertia {
     moments: Option<Moments>,
-    tensor: Option<Full>,
+    tensor: Option<InertiaRows>,
 }
 
 impl OfInertia {

@@ -88,7 +88,7 @@ pub(crate) struct Scalar<Q> {
 
 /// A finite number above zero, in SI units.
 #[derive(Clone, Copy)]
-pub(crate) struct Positive<Q> {
+pub(crate) struct PositiveScalar<Q> {
     pub(crate) value: f64,
     quantity: PhantomData<Q>,
 }
@@ -111,7 +111,7 @@ impl<'de, Q: Quantity> Deserialize<'de> for Scalar<Q> {
     }
 }
 
-impl<'de, Q: Quantity> Deserialize<'de> for Positive<Q> {
+impl<'de, Q: Quantity> Deserialize<'de> for PositiveScalar<Q> {
     fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
         let Scalar { value, quantity } = Scalar::<Q>::deserialize(source)?;
         if value > 0.0 { Ok(Self { value, quantity }) } else { Err(D::Error::custom("must be above zero")) }

@@ -5,7 +5,7 @@ use std::path::Path;
 use toml::de::{DeTable, DeValue};
 
 use crate::file::document::scene;
-use crate::file::mistake::{Mistake, Wrong, place_of};
+use crate::file::mistake::{Mistake, SpanMessage, place_of};
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::file::tables::{Document, span};
@@ -65,7 +65,7 @@ pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Mistake> {
 /// The first [`Mistake`] in it.
 pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<SceneFile, Mistake> {
     let path = path.as_ref();
-    let located = |(span, message): Wrong| Mistake::at(path, place_of(text, &span), message);
+    let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
     if has_several(document.get_ref()) {
         let message =

@@ -14,11 +14,11 @@ use crate::file::beginning::Beginning;
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
 use crate::file::draws::SceneEnsemble;
-use crate::file::effects::{self, EFFECTS, Listed, Table, effects};
+use crate::file::effects::{self, EFFECTS, EffectEntry, Table, effects};
 use crate::file::event::Event;
 use crate::file::group::Group;
-use crate::file::lagrangian::{Declared, taken};
-use crate::file::mistake::Wrong;
+use crate::file::lagrangian::{DeclaredTerm, taken};
+use crate::file::mistake::SpanMessage;
 use crate::file::orbit::{Orbit, put};
 use crate::file::over_time::OverTime;
 use crate::file::parameter::in_value;
@@ -47,7 +47,7 @@ macro_rules! scene_file {
 
         impl SceneFile {
             /// The effects of the scene.
-            pub(crate) fn effects(&self) -> impl Iterator<Item = (&'static Listed, &dyn Table)> {
+            pub(crate) fn effects(&self) -> impl Iterator<Item = (&'static EffectEntry, &dyn Table)> {
                 let tables = [$(self.$name.as_ref().map(|table| table as &dyn Table)),+];
                 EFFECTS.iter().zip(tables).filter_map(|(effect, table)| Some((effect, table?)))
             }
@@ -68,7 +68,7 @@ macro_rules! scene_file {
             }
 
             /// Replaces the body, the start or an effect by one read from a table; other names are ignored.
-            pub(crate) fn set(&mut self, name: &str, value: &Spanned<DeValue<'_>>) -> Result<(), Wrong> {
+            pub(crate) fn set(&mut self, name: &str, value: &Spanned<DeValue<'_>>) -> Result<(), SpanMessage> {
                 let table = || ValueDeserializer::from(value.clone());
                 let wrong = |error: Error| in_value(value, &error);
                 match name {
@@ -97,9 +97,9 @@ effects! { scene_file
     #[serde(default)]
     pub(crate) output: Output,
     #[serde(default, deserialize_with = "taken")]
-    pub(crate) lagrangian: Vec<Declared>,
+    pub(crate) lagrangian: Vec<DeclaredTerm>,
     #[serde(default, deserialize_with = "taken")]
-    pub(crate) force: Vec<Declared>,
+    pub(crate) force: Vec<DeclaredTerm>,
     /// The group of the scene.
     #[serde(skip)]
     pub(crate) group: Group,
@@ -188,7 +188,7 @@ impl SceneFile {
     }
 
     /// The Lagrangian with a pace.
-    pub(crate) fn paced(&self) -> Option<&Declared> {
+    pub(crate) fn paced(&self) -> Option<&DeclaredTerm> {
         self.lagrangian.iter().find(|own| own.has_a_pace)
     }
 
@@ -286,7 +286,7 @@ impl SceneFile {
     /// The inertia at the identity attitude; none for a Lagrangian that isn't of a body.
     pub(crate) fn inertia(&self) -> Option<Matrix3<f64>> {
         let own = self.lagrangian.iter().filter(|own| own.declaration.has_kinetic && self.group.is_rotation());
-        let of_lagrangian = || own.filter_map(Declared::inertia).reduce(|sum, own| sum + own);
+        let of_lagrangian = || own.filter_map(DeclaredTerm::inertia).reduce(|sum, own| sum + own);
         self.body.map(|body| *body.J.as_matrix()).or_else(of_lagrangian)
     }
 

@@ -6,7 +6,7 @@ use liestep::with::Scheme;
 use serde::Deserialize;
 
 use crate::file::method::scheme;
-use crate::file::quantity::{Duration, Number, Positive, Rate, short};
+use crate::file::quantity::{Duration, Number, PositiveScalar, Rate, short};
 
 /// The duration, the steps and the method.
 #[derive(Clone, Deserialize)]
@@ -29,7 +29,7 @@ pub(crate) struct Schedule {
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Density {
     /// Steps of about equal turns; this angular velocity bounds their length.
-    Turn(Positive<Rate>),
+    Turn(PositiveScalar<Rate>),
 }
 
 /// The quantity that determines the step.
@@ -44,11 +44,11 @@ pub(crate) enum Pace {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ScheduleTable {
-    step: Option<Positive<Duration>>,
-    accuracy: Option<Positive<Number>>,
+    step: Option<PositiveScalar<Duration>>,
+    accuracy: Option<PositiveScalar<Number>>,
     steps_per_orbit: Option<NonZeroU32>,
     density: Option<Density>,
-    duration: Positive<Duration>,
+    duration: PositiveScalar<Duration>,
     #[serde(default, deserialize_with = "scheme")]
     method: Scheme,
 }

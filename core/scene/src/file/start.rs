@@ -159,12 +159,12 @@ struct Components(UnitQuaternion<f64>);
 )]
 enum QuaternionValue {
     List(Vec<Scalar<Number>>),
-    Named(Named),
+    Table(ComponentTable),
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Named {
+struct ComponentTable {
     w: Scalar<Number>,
     x: Scalar<Number>,
     y: Scalar<Number>,
@@ -189,7 +189,7 @@ impl TryFrom<QuaternionValue> for Components {
                     return Err(format!("`quaternion` has the four components w, x, y, z, found {}", other.len()));
                 }
             },
-            QuaternionValue::Named(Named { w, x, y, z }) => [w, x, y, z],
+            QuaternionValue::Table(ComponentTable { w, x, y, z }) => [w, x, y, z],
         };
         // Divided by the largest component first, as squares may overflow or underflow.
         let quaternion = Quaternion::new(w.value, x.value, y.value, z.value);

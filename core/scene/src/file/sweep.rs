@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::file::draws::measured;
-use crate::file::mistake::{Mistake, Wrong};
+use crate::file::mistake::{Mistake, SpanMessage};
 use crate::file::scene::{SceneFile, Sweep};
 use crate::file::tables::{Document, Keys, dotted, ends, set};
 
@@ -34,7 +34,7 @@ impl Axis<'_> {
         }
     }
 
-    fn value(&self, number: usize) -> Result<Spanned<DeValue<'_>>, Wrong> {
+    fn value(&self, number: usize) -> Result<Spanned<DeValue<'_>>, SpanMessage> {
         match &self.values {
             Values::Listed(values) => Ok(values[number].clone()),
             Values::Spread(texts) => {
@@ -49,7 +49,7 @@ impl Axis<'_> {
 pub(crate) fn read(
     document: &Document<'_>,
     table: &Spanned<DeValue<'_>>,
-    located: &dyn Fn(Wrong) -> Mistake,
+    located: &dyn Fn(SpanMessage) -> Mistake,
     scene: &dyn Fn(&Document<'_>) -> Result<SceneFile, Mistake>,
 ) -> Result<Sweep, Mistake> {
     let DeValue::Table(inner) = table.get_ref() else {
@@ -82,7 +82,7 @@ pub(crate) fn read(
 }
 
 /// A varied key with its values.
-fn axis<'a>((keys, value): (Keys, &Spanned<DeValue<'a>>)) -> Result<Axis<'a>, Wrong> {
+fn axis<'a>((keys, value): (Keys, &Spanned<DeValue<'a>>)) -> Result<Axis<'a>, SpanMessage> {
     let wrong = |message: &str| Err((value.span(), message.to_owned()));
     let values = match value.get_ref() {
         DeValue::Array(values) if values.is_empty() => return wrong("a sweep has a value at least"),
@@ -97,7 +97,7 @@ const RANGE: &str =
     "a range is `{ from = …, to = …, count = … }`: two numbers, or texts with the same unit, and how many";
 
 /// Equally spaced values, both ends included.
-fn spread(range: &DeTable<'_>, span: &Range<usize>) -> Result<Vec<String>, Wrong> {
+fn spread(range: &DeTable<'_>, span: &Range<usize>) -> Result<Vec<String>, SpanMessage> {
     let wrong = || (span.clone(), RANGE.to_owned());
     let get = |key| range.get(key).map(Spanned::get_ref).filter(|_| range.len() == 3).ok_or_else(wrong);
     let end = |key| measured(get(key)?).ok_or_else(wrong);

@@ -9,15 +9,15 @@ use nalgebra::{UnitQuaternion, Vector3};
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::body::{Full, INERTIA, Kinetic, Moments, Nonstandard};
+use crate::file::body::{INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
 use crate::file::column::{Column, Output};
 use crate::file::joint::{Joint, JointTable, Names};
-use crate::file::mistake::{Mistake, Wrong, advised, place_of};
+use crate::file::mistake::{Mistake, SpanMessage, advised, place_of};
 use crate::file::part::{Between, SystemBody};
 use crate::file::picture::PlanePicture;
 use crate::file::placed::place;
 use crate::file::quantity::{
-    Acceleration, Direction, Duration, Length, Mass, Positive, Scalar, Speed, Stiffness, Triple, round, short,
+    Acceleration, Direction, Duration, Length, Mass, PositiveScalar, Scalar, Speed, Stiffness, Triple, round, short,
 };
 use crate::file::schedule::{equal_steps, fraction};
 use crate::file::start::Start;
@@ -95,10 +95,10 @@ struct SystemTable {
 #[serde(deny_unknown_fields)]
 struct BodyTable {
     name: Spanned<String>,
-    m: Positive<Mass>,
+    m: PositiveScalar<Mass>,
     moments: Option<Moments>,
-    J_d: Option<Nonstandard>,
-    J: Option<Full>,
+    J_d: Option<NonstandardMoments>,
+    J: Option<InertiaRows>,
     kinetic: Option<Spanned<Kinetic>>,
     position: Option<Triple<Length>>,
     moving: Option<Triple<Speed>>,
@@ -117,15 +117,15 @@ struct FieldTable {
 struct SpringTable {
     bodies: Names,
     at: [Triple<Length>; 2],
-    k: Positive<Stiffness>,
+    k: PositiveScalar<Stiffness>,
     length: Scalar<Length>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RunTable {
-    step: Spanned<Positive<Duration>>,
-    duration: Spanned<Positive<Duration>>,
+    step: Spanned<PositiveScalar<Duration>>,
+    duration: Spanned<PositiveScalar<Duration>>,
     #[serde(default)]
     nearest: bool,
 }
@@ -200,7 +200,7 @@ impl System {
     }
 }
 
-fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<System, Wrong> {
+fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<System, SpanMessage> {
     let (mut bodies, mut names): (Vec<SystemBody>, Vec<Range<usize>>) = Default::default();
     let mut is_placed = Vec::new();
     for body in table.body {
@@ -239,7 +239,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         let spring = Spring { k: k.value, length: length.value, at: at.map(|point| point.value) };
         Ok(Between { bodies: numbers(&names, &bodies)?, of: spring })
     });
-    let springs = springs.collect::<Result<_, Wrong>>()?;
+    let springs = springs.collect::<Result<_, SpanMessage>>()?;
     let step = table.run.step.get_ref().value;
     let duration = table.run.duration.get_ref().value;
     let steps = equal_steps(step, duration).map_err(|message| (table.run.step.span(), message))?;
@@ -273,7 +273,7 @@ fn name_twice(columns: &[Column], bodies: &[&str]) -> Option<(usize, String)> {
 }
 
 /// A body, the place of its name, and whether it has a place in space.
-fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>, bool), Wrong> {
+fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>, bool), SpanMessage> {
     let span = body.span();
     let BodyTable { name, m, moments, J_d, J, kinetic, position, moving, start } = body.into_inner();
     // The name of a body is the prefix of its columns.
@@ -285,8 +285,8 @@ fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>, bool),
         return Err((name.span(), "`space` is what bodies move in; give the body another name".to_owned()));
     }
     let J = match (moments, J_d, J) {
-        (Some(Moments { J, .. }), None, None) | (None, None, Some(Full(J))) => J,
-        (None, Some(Nonstandard(J_d)), None) => NonstandardInertia::from(J_d).to_inertia(),
+        (Some(Moments { J, .. }), None, None) | (None, None, Some(InertiaRows(J))) => J,
+        (None, Some(NonstandardMoments(J_d)), None) => NonstandardInertia::from(J_d).to_inertia(),
         _ => return Err((span, INERTIA.to_owned())),
     };
     if let Some(kinetic) = kinetic.as_ref().filter(|kinetic| kinetic.get_ref().order() != 2) {
@@ -318,7 +318,7 @@ fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>, bool),
 const SPACE: &str = "space";
 
 /// The numbers of two named bodies.
-fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], Wrong> {
+fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], SpanMessage> {
     let mut numbers = [None; 2];
     for (number, name) in numbers.iter_mut().zip(names.get_ref()) {
         if name.get_ref() == SPACE {
@@ -338,7 +338,7 @@ fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], W
 }
 
 /// The joint of two named bodies, and the place of its coordinates at the start. Space comes first.
-fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<(Between<Joint>, Option<Range<usize>>), Wrong> {
+fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<(Between<Joint>, Option<Range<usize>>), SpanMessage> {
     let mut between = numbers(&joint.bodies, bodies)?;
     let (is_swapped, coordinate) = (between[1].is_none(), joint.coordinate());
     if is_swapped {

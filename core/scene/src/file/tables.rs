@@ -5,7 +5,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::file::mistake::Wrong;
+use crate::file::mistake::SpanMessage;
 
 /// The tables of a text.
 pub(crate) type Document<'a> = Spanned<DeTable<'a>>;
@@ -54,7 +54,7 @@ pub(crate) fn set<'a>(
     table: &mut DeTable<'a>,
     keys: &[Spanned<String>],
     value: Spanned<DeValue<'a>>,
-) -> Result<(), Wrong> {
+) -> Result<(), SpanMessage> {
     let [key, rest @ ..] = keys else { return Ok(()) };
     let name = || Spanned::new(key.span(), key.get_ref().clone().into());
     if rest.is_empty() {

@@ -11,7 +11,7 @@ use crate::file::body::Kinetic;
 use crate::file::joint::{Joint, Kind};
 use crate::file::part::{Between, SystemBody};
 use crate::file::system::{Spring, System};
-use crate::run::nearest::Moving;
+use crate::run::nearest::BodyState;
 
 /// A body with its weight. One of the three kinetic terms has the factor one, the others zero.
 #[lagrangian(
@@ -28,7 +28,7 @@ use crate::run::nearest::Moving;
     },
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Heavy {
+pub(crate) struct HeavyBody {
     /// Moment of inertia about the centre of mass, kg m².
     pub(crate) J: Inertia,
     pub(crate) J_d: NonstandardInertia,
@@ -84,7 +84,16 @@ impl System {
         for body in &self.bodies {
             let is = |kinetic| f64::from(u8::from(body.kinetic == kinetic));
             let [rigid, geodesic, cayley] = [Kinetic::Rigid, Kinetic::Geodesic, Kinetic::Cayley].map(is);
-            system.body(Heavy { J: body.J, J_d: body.J.to_nonstandard(), rigid, geodesic, cayley, m: body.m, g, up });
+            system.body(HeavyBody {
+                J: body.J,
+                J_d: body.J.to_nonstandard(),
+                rigid,
+                geodesic,
+                cayley,
+                m: body.m,
+                g,
+                up,
+            });
         }
         for &Between { bodies, of: Spring { k, length, at: [at_1, at_2] } } in &self.springs {
             if length == 0.0 {
@@ -104,7 +113,7 @@ impl System {
     }
 
     /// The file's initial configurations and velocities.
-    fn given(&self) -> Vec<Moving> {
+    fn given(&self) -> Vec<BodyState> {
         let of = |body: &SystemBody| {
             let (turn, shift) = (body.start.velocity, body.moving);
             let velocity = Vector6::new(turn.x, turn.y, turn.z, shift.x, shift.y, shift.z);

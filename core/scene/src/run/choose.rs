@@ -23,16 +23,16 @@ pub type Whole = liestep_late::Whole<Backend>;
 
 /// A library body by its text, with its parameters.
 #[derive(Clone)]
-struct Moving {
+struct LibraryBody {
     text: &'static str,
     numbers: Vec<f64>,
 }
 
-impl Moving {
+impl LibraryBody {
     /// The body of a file; none with a kinetic energy of the file's own.
     fn of(file: &SceneFile, J: Inertia) -> Option<Self> {
-        fn body<E: Effect<Scalar = f64>>(body: &E) -> Moving {
-            Moving { text: E::DECLARATION, numbers: liestep_late::numbers(body) }
+        fn body<E: Effect<Scalar = f64>>(body: &E) -> LibraryBody {
+            LibraryBody { text: E::DECLARATION, numbers: liestep_late::numbers(body) }
         }
         let given = file.body?;
         Some(match (given.kinetic, given.mass) {
@@ -47,7 +47,7 @@ impl Moving {
 }
 
 /// The sum of this body, if any, and of the file's Lagrangians, effects and forces, which is derived once per process.
-fn sum(file: &SceneFile, body: Option<&Moving>) -> Result<Option<&'static Declaration>, LateError> {
+fn sum(file: &SceneFile, body: Option<&LibraryBody>) -> Result<Option<&'static Declaration>, LateError> {
     let body = body.map(|body| Declaration::parse(body.text)).into_iter();
     let [lagrangians, forces] = [&file.lagrangian, &file.force].map(|own| own.iter().map(|own| Ok(own.declaration)));
     let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
@@ -64,7 +64,7 @@ struct Data {
 
 impl Data {
     fn of(file: &SceneFile, J: &Inertia) -> Result<Self, Stop> {
-        let body = Moving::of(file, *J);
+        let body = LibraryBody::of(file, *J);
         let sum = sum(file, body.as_ref()).map_err(|error| late_error(&error))?.ok_or_else(nothing)?;
         let numbers = sum.described(&numbers(file, J, body.as_ref(), 0.0)).map_err(|error| late_error(&error))?;
         Ok(Self { sum, numbers })
@@ -107,7 +107,7 @@ fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
 }
 
 /// The parameters of all terms at a time, in order.
-fn numbers(file: &SceneFile, J: &Inertia, body: Option<&Moving>, time: f64) -> Vec<f64> {
+fn numbers(file: &SceneFile, J: &Inertia, body: Option<&LibraryBody>, time: f64) -> Vec<f64> {
     let [lagrangians, forces] =
         [&file.lagrangian, &file.force].map(|own| own.iter().flat_map(|own| own.numbers.iter().copied()));
     let body = body.iter().flat_map(|body| body.numbers.iter().copied());
@@ -155,7 +155,7 @@ pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
 struct SceneCourse {
     file: RefCell<SceneFile>,
     J: Inertia,
-    body: Option<Moving>,
+    body: Option<LibraryBody>,
     sum: &'static Declaration,
 }
 
@@ -178,7 +178,7 @@ impl Course for SceneCourse {
 /// The stepper of a scene with terms that change with time, whose values are those of each step's middle.
 fn over_time(file: &SceneFile, J: Inertia, h: f64, method: Method) -> Result<AnyStepper, Stop> {
     let Data { sum, numbers } = Data::of(file, &J)?;
-    let course = SceneCourse { file: RefCell::new(file.clone()), J, body: Moving::of(file, J), sum };
+    let course = SceneCourse { file: RefCell::new(file.clone()), J, body: LibraryBody::of(file, J), sum };
     let whole = |h| Whole::of(sum, &numbers, h, method).map_err(whole_error);
     let clock = file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok());
     let driven = match clock {

@@ -17,7 +17,7 @@ use crate::run::make::{Course, EventFunction};
 pub type MemberStart = (AnyStepper, AnyState);
 
 /// An integrator of a body on SO(3).
-pub trait Rotating: Integrator<Scalar = f64> {
+pub trait BodyIntegrator: Integrator<Scalar = f64> {
     /// The attitude, body to space.
     fn attitude(motion: &Self::Motion) -> SO3;
 
@@ -31,7 +31,7 @@ pub trait Rotating: Integrator<Scalar = f64> {
     fn in_space(now: &Moment<'_, Self>) -> Vec<f64>;
 }
 
-impl Rotating for AnyStepper {
+impl BodyIntegrator for AnyStepper {
     fn attitude(motion: &AnyMotion) -> SO3 {
         SO3::from_matrix_unchecked(Matrix3::from_row_slice(motion.attitude()))
     }
@@ -50,7 +50,7 @@ impl Rotating for AnyStepper {
 }
 
 /// The sample of a scene on this group at this moment.
-pub(crate) fn sample<I: Rotating>(group: &Group, now: &Moment<'_, I>) -> Sample {
+pub(crate) fn sample<I: BodyIntegrator>(group: &Group, now: &Moment<'_, I>) -> Sample {
     let (time, energy, gap, momentum) = (now.time(), now.energy(), 0.0, nalgebra::zero());
     let quaternions = Arc::clone(&group.quaternions);
     if group.is_rotation() {
@@ -96,7 +96,7 @@ pub type MemberEvent<I> = (String, recording::Event, Box<dyn Fn(&Moment<'_, I>) 
 
 impl SceneFile {
     /// The events to be detected for the members of an ensemble.
-    pub fn member_events<I: Rotating>(&self) -> impl Iterator<Item = MemberEvent<I>> {
+    pub fn member_events<I: BodyIntegrator>(&self) -> impl Iterator<Item = MemberEvent<I>> {
         let of = move |Event { name, quantity, direction, stops, .. }: &Event| -> MemberEvent<I> {
             (name.clone(), kind(*direction), Box::new(function(*quantity, self)), *stops)
         };
@@ -115,7 +115,7 @@ fn kind(direction: Direction) -> recording::Event {
 
 /// The function that rises through zero with the quantity through its value. A tilt is that of the picture's axis, body
 /// frame.
-fn function<I: Rotating>(
+fn function<I: BodyIntegrator>(
     quantity: Quantity,
     file: &SceneFile,
 ) -> impl Fn(&Moment<'_, I>) -> f64 + Send + Sync + use<I> + 'static {

@@ -9,7 +9,7 @@ use crate::file::system::System;
 use crate::run::stiffness::eigen;
 
 /// Attitude and position of a body, and its velocities; the angular velocity is in the body frame.
-pub(crate) type Moving = ((SO3, R3), Vector6<f64>);
+pub(crate) type BodyState = ((SO3, R3), Vector6<f64>);
 
 impl System {
     /// The bodies with the least mass-weighted shifts that close the joints, and with the nearest velocities that keep
@@ -18,7 +18,7 @@ impl System {
     ///
     /// Both problems are linear at fixed attitudes: with `b` the gaps `R_a ρ_a − R_b ρ_b − (x_b − x_a)` and `A` the
     /// differences `x_b − x_a`, the shifts are `M⁻¹ Aᵀ (A M⁻¹ Aᵀ)⁺ b`.
-    pub(crate) fn shifted(&self, mut bodies: Vec<Moving>) -> Vec<Moving> {
+    pub(crate) fn shifted(&self, mut bodies: Vec<BodyState>) -> Vec<BodyState> {
         let mut differences = DMatrix::zeros(self.joints.len(), bodies.len());
         let mut gaps = MatrixXx3::zeros(self.joints.len());
         let mut partings = MatrixXx3::zeros(self.joints.len());
@@ -50,7 +50,7 @@ impl System {
 }
 
 /// Position and velocity of a point of a body, or of space.
-fn point(body: Option<Moving>, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
+fn point(body: Option<BodyState>, point: &Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     body.map_or((*point, Vector3::zeros()), |((attitude, place), velocity)| {
         let R = attitude.as_matrix();
         let turns = velocity.fixed_rows::<3>(0).cross(point);

@@ -16,7 +16,7 @@ use crate::file::sample::Sample;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
 use crate::run::choose::{self, Whole};
-use crate::run::course::{MemberStart, Rotating, sample};
+use crate::run::course::{BodyIntegrator, MemberStart, sample};
 use crate::run::make::{Listeners, Run, Stop, fast_turn};
 
 impl SceneFile {
@@ -109,7 +109,7 @@ impl SceneFile {
 
     /// The numbers of these columns at a moment, one after the other. The sign of a quaternion is arbitrary.
     #[must_use]
-    pub fn numbers<I: Rotating>(&self, columns: &[Column], now: &Moment<'_, I>) -> Vec<f64> {
+    pub fn numbers<I: BodyIntegrator>(&self, columns: &[Column], now: &Moment<'_, I>) -> Vec<f64> {
         let now = sample(&self.group, now);
         Column::row(columns, &now, &now)
     }

@@ -20,9 +20,9 @@ const SHARE: f64 = 0.5;
 
 /// Differences of two states, the largest among all bodies: rad, rad/s, m and m/s; on a group other than SO(3) those of
 /// the attitude's columns and of the velocity, in the places of the second pair.
-struct Apart([f64; 4]);
+struct Differences([f64; 4]);
 
-impl Apart {
+impl Differences {
     fn of(one: &Sample, other: &Sample, parts: Option<&Parts>) -> Self {
         if let Some(parts) = parts {
             let [attitude, velocity] = parts.clone().map(|part| distance(one, other, part));
@@ -89,7 +89,7 @@ fn line(run: &Run, order: u32, parts: Option<&Parts>, again: impl Fn(u32, f64) -
     // Slower motions are rounding errors.
     let floor = 1e-6 / (f64::from(steps) * run.step());
     let limits = [ANOTHER, SHARE * turning.max(floor), SHARE * way.max(1e-6), SHARE * moving.max(floor)];
-    let another = |Apart(apart): &Apart| {
+    let another = |Differences(apart): &Differences| {
         let place = if parts.is_some() { "attitude" } else { "position" };
         let names = ["attitude", "angular velocity", place, "velocity"].into_iter();
         names.zip(apart.iter().zip(&limits)).find_map(|(name, (apart, limit))| (apart > limit).then_some(name))
@@ -100,7 +100,7 @@ fn line(run: &Run, order: u32, parts: Option<&Parts>, again: impl Fn(u32, f64) -
         let early = |other: &&&Sample| other.time < sample.time - 0.25 * run.step();
         while seconds.next_if(|other| early(&other)).is_some() {}
         let Some(other) = seconds.peek().filter(|other| other.time < sample.time + 0.25 * run.step()) else { continue };
-        let apart = Apart::of(sample, other, parts);
+        let apart = Differences::of(sample, other, parts);
         if let Some(name) = another(&apart) {
             return Some(format!(
                 "  the end isn't determined: by steps of {} s the {name} is another from t = {} s on\n",

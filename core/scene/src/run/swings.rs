@@ -4,7 +4,7 @@ use liestep::mechanics::Inertia;
 use liestep::with::Scheme;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::file::orbit::{OnOrbit, Turning};
+use crate::file::orbit::{OnOrbit, VectorInTime};
 use crate::file::quantity::{round, short};
 use crate::file::scene::SceneFile;
 use crate::file::schedule::Pace;
@@ -71,7 +71,7 @@ impl SceneFile {
         let gradient = self.gravity_gradient.map(|gradient| {
             let strength = match (gradient.GM, gradient.r, gradient.direction) {
                 (Some(GM), Some(r), _) => GM.value / r.value.powi(3),
-                (.., Turning::Turns(OnOrbit { orbit })) => orbit.rate() * orbit.rate(),
+                (.., VectorInTime::Turns(OnOrbit { orbit })) => orbit.rate() * orbit.rate(),
                 _ => 0.0,
             };
             let mut moments: [f64; 3] = J.principal_moments().into();

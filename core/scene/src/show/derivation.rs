@@ -8,10 +8,10 @@ use liestep_late::{Declaration, LateError};
 use crate::file::body::{Distribution, Kinetic};
 use crate::file::effects::EFFECTS;
 use crate::file::joint::{Joint, Kind};
-use crate::file::lagrangian::Declared;
+use crate::file::lagrangian::DeclaredTerm;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
-use crate::run::bodies::{Coil, Cord, Heavy};
+use crate::run::bodies::{Coil, Cord, HeavyBody};
 
 /// A term's derivation, and the text of its declaration.
 type Derivation = (&'static str, &'static str);
@@ -99,7 +99,7 @@ impl SceneFile {
         form.of(Declaration::sum(&listed.chain(own).collect::<Result<Vec<_>, _>>()?)?)
     }
 
-    fn own(&self) -> impl Iterator<Item = &Declared> {
+    fn own(&self) -> impl Iterator<Item = &DeclaredTerm> {
         self.lagrangian.iter().chain(&self.force)
     }
 
@@ -165,6 +165,6 @@ impl System {
         let balls = if any(&|joint| joint.kind.has_one_point()) { BALLS } else { "" };
         let kinds = Kind::ALL.into_iter().filter(|kind| any(&|joint| joint.kind == *kind)).map(constraints);
         let kinds: String = kinds.collect();
-        format!("{}{gravity}{springs}{cords}{terms}{balls}{kinds}", Heavy::DERIVATION)
+        format!("{}{gravity}{springs}{cords}{terms}{balls}{kinds}", HeavyBody::DERIVATION)
     }
 }

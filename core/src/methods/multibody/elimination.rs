@@ -36,7 +36,7 @@
 use nalgebra::{Matrix6, SMatrix, Vector2, Vector6};
 
 use super::graph::Tree;
-use super::nodes::{Block, Closing, Ends, Node, Unknowns, add};
+use super::nodes::{Block, Ends, Loop, Node, Unknowns, add};
 use crate::numbers::{Coordinates as _, Pattern};
 
 /// Calls a function that is compiled for each number of functions of a joint.
@@ -54,7 +54,7 @@ macro_rules! by_rows {
 }
 
 /// Factorises all matrices.
-pub(super) fn factorise(tree: &Tree, nodes: &mut [Node], loops: &mut [Closing]) {
+pub(super) fn factorise(tree: &Tree, nodes: &mut [Node], loops: &mut [Loop]) {
     for closing in &mut *loops {
         closing.free = free(closing, nodes);
     }
@@ -132,7 +132,7 @@ fn complement<const K: usize>(node: &Node, is_parent: bool, row: &Block, column:
 }
 
 /// The diagonal of `S_L` of a joint between bodies that were free.
-fn free(closing: &Closing, nodes: &[Node]) -> Vector6<f64> {
+fn free(closing: &Loop, nodes: &[Node]) -> Vector6<f64> {
     closing.ends().fold(Vector6::zeros(), |free, (body, Ends { before, after })| {
         let factors = Vector6::factorise_apart(&nodes[body].matrix, Pattern::WHOLE).0;
         let entry = |row: usize| {
@@ -144,7 +144,7 @@ fn free(closing: &Closing, nodes: &[Node]) -> Vector6<f64> {
 }
 
 /// The border's columns `Y`, and the factors of `S_L`.
-fn close(tree: &Tree, nodes: &[Node], loops: &mut [Closing]) {
+fn close(tree: &Tree, nodes: &[Node], loops: &mut [Loop]) {
     let bodies = nodes.len();
     for closing in &mut *loops {
         closing.columns.fill(Vector6::zeros());
@@ -191,7 +191,7 @@ fn close(tree: &Tree, nodes: &[Node], loops: &mut [Closing]) {
 
 /// Solves for these right-hand sides by the factors. Returns the summed squares of the `w`, of turns and of shifts: in
 /// a stiffly constrained system the solution is a small difference of large `w`, which sets its rounding error.
-pub(super) fn solve(tree: &Tree, nodes: &[Node], loops: &[Closing], unknowns: &mut Unknowns) -> Vector2<f64> {
+pub(super) fn solve(tree: &Tree, nodes: &[Node], loops: &[Loop], unknowns: &mut Unknowns) -> Vector2<f64> {
     let Unknowns { bodies, joints, loops: of_loops } = unknowns;
     let size = substitute(tree, nodes, bodies, joints);
     for (k, closing) in loops.iter().enumerate() {

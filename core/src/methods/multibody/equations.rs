@@ -9,8 +9,8 @@ roots!();
 use super::constraint::Place;
 use super::couplings::Coefficients;
 use super::elimination::{factorise, solve};
-use super::graph::{Joined, Member, Tree};
-use super::nodes::{Closing, Ends, Node, Unknowns, set_blocks};
+use super::graph::{Joint, Member, Tree};
+use super::nodes::{Ends, Loop, Node, Unknowns, set_blocks};
 use super::{parts, place_of};
 
 /// The least pivot of a joint that closes a loop and isn't redundant, relative to that between free bodies. The
@@ -36,7 +36,7 @@ pub(super) struct Widest {
 #[derive(Clone, Default)]
 pub(super) struct Equations {
     nodes: Vec<Node>,
-    loops: Vec<Closing>,
+    loops: Vec<Loop>,
     pub(super) unknowns: Unknowns,
 }
 
@@ -57,18 +57,18 @@ impl Side {
 }
 
 /// The functions of a joint at these places.
-pub(super) fn gap(joined: &Joined, places: &[Place]) -> Vector6<f64> {
+pub(super) fn gap(joined: &Joint, places: &[Place]) -> Vector6<f64> {
     joined.functions.gap(place_of(places, joined.above), &places[joined.below])
 }
 
 /// The gap of a joint by all its functions, if some of them aren't imposed.
-pub(super) fn gap_of_all(joined: &Joined, places: &[Place]) -> Option<Vector6<f64>> {
+pub(super) fn gap_of_all(joined: &Joint, places: &[Place]) -> Option<Vector6<f64>> {
     joined.functions.gap_of_all(place_of(places, joined.above), &places[joined.below])
 }
 
 impl Equations {
     /// Makes room for these bodies and joints, if the last ones were others. Slopes and matrices aren't set.
-    pub(super) fn fit(&mut self, joints: &[Joined], tree: &Tree) {
+    pub(super) fn fit(&mut self, joints: &[Joint], tree: &Tree) {
         let rows = |joint: Option<usize>| joint.map_or(0, |joint| joints[joint].functions.rows());
         let all = [tree.members.len(), tree.loops.len()];
         let node = |(member, neighbours): (&Member, &Vec<_>)| {
@@ -93,7 +93,7 @@ impl Equations {
         self.nodes.clear();
         self.nodes.extend(members().map(node));
         self.loops.clear();
-        self.loops.extend(tree.loops.iter().map(|&joint| Closing::new(bodies(joint), rows(Some(joint)), all)));
+        self.loops.extend(tree.loops.iter().map(|&joint| Loop::new(bodies(joint), rows(Some(joint)), all)));
         self.unknowns.bodies.resize(all[0], Vector6::zeros());
         self.unknowns.joints.resize(all[0], Vector6::zeros());
         self.unknowns.loops.resize(all[1], Vector6::zeros());
@@ -102,7 +102,7 @@ impl Equations {
     /// Sets one of the slopes of all joints at these places, for unknowns that turn the bodies by these maps.
     fn set(
         &mut self,
-        joints: &[Joined],
+        joints: &[Joint],
         tree: &Tree,
         places: &[Place],
         side: Side,
@@ -128,17 +128,17 @@ impl Equations {
     }
 
     /// Sets `E` at these places.
-    pub(super) fn set_before(&mut self, joints: &[Joined], tree: &Tree, places: &[Place]) {
+    pub(super) fn set_before(&mut self, joints: &[Joint], tree: &Tree, places: &[Place]) {
         self.set(joints, tree, places, Side::Before, |body| places[body].attitude);
     }
 
     /// Sets `C` at these places, for unknowns that turn the bodies by these maps.
-    pub(super) fn set_after(&mut self, joints: &[Joined], tree: &Tree, places: &[Place], turns: &[Matrix3<f64>]) {
+    pub(super) fn set_after(&mut self, joints: &[Joint], tree: &Tree, places: &[Place], turns: &[Matrix3<f64>]) {
         self.set(joints, tree, places, Side::After, |body| turns[body]);
     }
 
     /// Sets the equations of velocities at these places, with `C = E`, by the inertias of the bodies.
-    pub(super) fn set_velocities(&mut self, joints: &[Joined], tree: &Tree, places: &[Place], inertias: &Coefficients) {
+    pub(super) fn set_velocities(&mut self, joints: &[Joint], tree: &Tree, places: &[Place], inertias: &Coefficients) {
         self.set_before(joints, tree, places);
         let of_trees = self.nodes.iter_mut().flat_map(|node| &mut node.ends);
         let ends = of_trees.chain(self.loops.iter_mut().flat_map(|closing| &mut closing.ends));
@@ -203,7 +203,7 @@ impl Equations {
     }
 
     /// The joint with the widest gap; `lengths` are the bodies' radii of gyration, m.
-    pub(super) fn widest_gap(&self, joints: &[Joined], tree: &Tree, places: &[Place], lengths: &[f64]) -> Widest {
+    pub(super) fn widest_gap(&self, joints: &[Joint], tree: &Tree, places: &[Place], lengths: &[f64]) -> Widest {
         let shift = |body: usize| lengths[body].max(places[body].position.norm());
         self.widest(tree, 1.0, shift, |joint, _| gap(&joints[joint], places))
     }
@@ -319,7 +319,7 @@ impl Equations {
     }
 
     fn first_redundant_loop(&self) -> Option<usize> {
-        let has_something = |closing: &Closing| closing.pivot > REDUNDANT;
+        let has_something = |closing: &Loop| closing.pivot > REDUNDANT;
         self.loops.iter().position(|closing| !has_something(closing))
     }
 

@@ -33,9 +33,9 @@ pub(super) trait Functions: Send + Sync {
 }
 
 /// A constraint of `K` functions.
-pub(super) struct Erased<C, const K: usize>(pub(super) C);
+pub(super) struct ConstraintFunctions<C, const K: usize>(pub(super) C);
 
-impl<C: Constraint<K>, const K: usize> Functions for Erased<C, K> {
+impl<C: Constraint<K>, const K: usize> Functions for ConstraintFunctions<C, K> {
     fn validate(&self) -> Result<(), SetupError> {
         self.0.validate()
     }

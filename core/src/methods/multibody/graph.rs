@@ -10,7 +10,7 @@ use crate::error::SetupError;
 
 /// A joint between two bodies, or between space and a body.
 #[derive(Clone)]
-pub(super) struct Joined {
+pub(super) struct Joint {
     pub(super) functions: Arc<dyn Functions>,
     /// The body above; `None` is space.
     pub(super) above: Option<usize>,
@@ -52,7 +52,7 @@ pub(super) struct Tree {
 
 impl Tree {
     /// The trees of `bodies` with these joints, and with terms that couple these pairs of bodies.
-    pub(super) fn of(joints: &[Joined], bodies: usize, couplings: Vec<[usize; 2]>) -> Result<Self, SetupError> {
+    pub(super) fn of(joints: &[Joint], bodies: usize, couplings: Vec<[usize; 2]>) -> Result<Self, SetupError> {
         for (joint, joined) in joints.iter().enumerate() {
             let refused = |cause| Err(SetupError::Joint { joint, cause });
             if joined.below >= bodies || joined.above.is_some_and(|above| above >= bodies) {

@@ -116,7 +116,7 @@ impl Node {
 
 /// The equations of a joint that closes a loop, and their factors after elimination.
 #[derive(Clone)]
-pub(super) struct Closing {
+pub(super) struct Loop {
     /// The bodies below and above; `None` is space.
     pub(super) bodies: [Option<usize>; 2],
     pub(super) ends: [Ends; 2],
@@ -138,7 +138,7 @@ pub(super) struct Closing {
     pub(super) of_joint: f64,
 }
 
-impl Closing {
+impl Loop {
     /// A joint with this number of functions among `all` bodies and loops.
     pub(super) fn new(bodies: [Option<usize>; 2], rows: usize, all: [usize; 2]) -> Self {
         let zeros = vec![Vector6::zeros(); rows * all[0]];

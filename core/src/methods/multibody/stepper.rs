@@ -11,7 +11,7 @@ roots!();
 use super::constraint::Place;
 use super::couplings::{Coupling, couplings};
 use super::equations::{gap, gap_of_all};
-use super::graph::{Joined, Tree};
+use super::graph::{Joint, Tree};
 use super::state::{Offsets, body_at, layout};
 use super::system::{Multibody, ends};
 use super::terms::{BodyTerm, space};
@@ -104,7 +104,7 @@ impl MultibodyStepper {
         let (couplings, coupled) = couplings(pairs);
         let tree = Tree::of(&system.joints, system.bodies, coupled)?;
         let free = tree.without_joints();
-        let is_reduced = |joined: &Joined| joined.functions.gap_of_all(&Place::SPACE, &Place::SPACE).is_some();
+        let is_reduced = |joined: &Joint| joined.functions.gap_of_all(&Place::SPACE, &Place::SPACE).is_some();
         let reduced =
             system.joints.iter().enumerate().filter(|(_, joined)| is_reduced(joined)).map(|(k, _)| k).collect();
         let place = |body: usize| system.terms.partition_point(|(of, _)| *of < body);
@@ -133,7 +133,7 @@ impl MultibodyStepper {
         self.system.bodies
     }
 
-    pub(super) fn joints(&self) -> &[Joined] {
+    pub(super) fn joints(&self) -> &[Joint] {
         &self.system.joints
     }
 

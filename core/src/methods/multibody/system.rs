@@ -6,8 +6,8 @@ use alloc::vec::Vec;
 
 use super::Body;
 use super::constraint::Constraint;
-use super::functions::Erased;
-use super::graph::Joined;
+use super::functions::ConstraintFunctions;
+use super::graph::Joint;
 use super::part::BodyPart;
 use super::terms::{BodyTerm, PairTerm, of_body, of_pair};
 use crate::error::SetupError;
@@ -91,7 +91,7 @@ pub struct Multibody {
     /// Each with its body.
     pub(super) terms: Vec<(usize, Arc<dyn BodyTerm>)>,
     pub(super) pairs: Vec<PlacedPair>,
-    pub(super) joints: Vec<Joined>,
+    pub(super) joints: Vec<Joint>,
 }
 
 /// A term between two bodies; `None` is space.
@@ -201,7 +201,7 @@ impl Multibody {
     /// Adds a joint between a body above, or space, `None`, and a body below. Errors count joints from zero.
     pub fn join<C: Constraint<K>, const K: usize>(&mut self, joint: C, above: Option<usize>, below: usize) {
         const { assert!(0 < K && K < 7, "a joint between two bodies has one function at least and six at most") }
-        self.joints.push(Joined { functions: Arc::new(Erased(joint)), above, below });
+        self.joints.push(Joint { functions: Arc::new(ConstraintFunctions(joint)), above, below });
     }
 
     /// The number of bodies.

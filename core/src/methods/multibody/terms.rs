@@ -81,19 +81,19 @@ pub(super) trait PairTerm: Send + Sync {
 }
 
 /// An effect, and its constants for a step.
-struct Folded<E: Effect> {
+struct StepEffect<E: Effect> {
     term: Arc<E>,
     spatial: E::Advected,
     constants: E::Constants,
 }
 
 /// A term on one body. Two wrappers are two implementations: a type may be a body and a pair of bodies at once.
-struct OnBody<E: Effect>(Folded<E>);
+struct OnBody<E: Effect>(StepEffect<E>);
 
 /// A term between two bodies.
-struct OnPair<E: Effect>(Folded<E>);
+struct OnPair<E: Effect>(StepEffect<E>);
 
-impl<E: Effect<Scalar = f64>> Folded<E> {
+impl<E: Effect<Scalar = f64>> StepEffect<E> {
     fn of(term: Arc<E>, h: f64) -> Self {
         Self { spatial: term.advected(), constants: term.constants(h), term }
     }
@@ -146,7 +146,7 @@ where
     E::Advected: Send + Sync,
 {
     const { assert!(E::IS_QUADRATIC, "{}", NOT_QUADRATIC) }
-    Arc::new(OnBody(Folded::of(Arc::new(term), 1.0)))
+    Arc::new(OnBody(StepEffect::of(Arc::new(term), 1.0)))
 }
 
 /// The term between two bodies, with constants for a step of 1 s.
@@ -157,7 +157,7 @@ where
     E::Advected: Send + Sync,
 {
     const { assert!(E::IS_QUADRATIC, "{}", NOT_QUADRATIC) }
-    Arc::new(OnPair(Folded::of(Arc::new(term), 1.0)))
+    Arc::new(OnPair(StepEffect::of(Arc::new(term), 1.0)))
 }
 
 impl<E> BodyTerm for OnBody<E>
@@ -183,13 +183,13 @@ where
     }
 
     fn kick_before(&self, now: &Body) -> Option<Vector6<f64>> {
-        let Folded { constants, .. } = &self.0;
+        let StepEffect { constants, .. } = &self.0;
         let kick = || E::Group::in_body(&E::kick_before(constants, &self.0.seen(&E::Group::of(now))));
         E::parts(constants).kick_before.then(kick)
     }
 
     fn kick_after(&self, increment: &Increment, next: &Body) -> Option<Vector6<f64>> {
-        let Folded { constants, .. } = &self.0;
+        let StepEffect { constants, .. } = &self.0;
         let increment = || E::Group::of_increment(increment);
         let kick = || E::Group::in_body(&E::kick_after(constants, &increment(), &self.0.seen(&E::Group::of(next))));
         E::parts(constants).kick_after.then(kick)
@@ -264,13 +264,13 @@ where
     }
 
     fn kick_before(&self, now: [&Body; 2]) -> Option<[Vector6<f64>; 2]> {
-        let Folded { constants, .. } = &self.0;
+        let StepEffect { constants, .. } = &self.0;
         let kick = || apart::<E::Group>(&E::kick_before(constants, &self.0.seen(&both(now))));
         E::parts(constants).kick_before.then(kick)
     }
 
     fn kick_after(&self, increments: [&Increment; 2], next: [&Body; 2]) -> Option<[Vector6<f64>; 2]> {
-        let Folded { constants, .. } = &self.0;
+        let StepEffect { constants, .. } = &self.0;
         E::parts(constants).kick_after.then(|| {
             let [first, second] = increments.map(<BodyOf<E> as BodyPart>::of_increment);
             let increment = E::Group::matrices(&first, &second);

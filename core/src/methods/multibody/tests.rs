@@ -206,7 +206,7 @@ fn steps_have_the_same_bits_on_every_thread() {
         + c * (R_1 * (Q * vee(F_2))).dot(&s_2) - 0.5 * c * (R_1 * (F_1 * eta_1_next)).dot(&d_2),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Rubbing {
+struct CrossTerm {
     c: f64,
 }
 
@@ -270,11 +270,11 @@ fn coupled(h: f64) -> MultibodyStepper {
             Some(before) => system.join(ball(RIGHT, LEFT), Some(before), k),
         }
     }
-    system.between([Some(0), Some(1)], Rubbing { c: 0.7 });
-    system.between([Some(2), Some(1)], Rubbing { c: 0.4 });
+    system.between([Some(0), Some(1)], CrossTerm { c: 0.7 });
+    system.between([Some(2), Some(1)], CrossTerm { c: 0.4 });
     system.between([Some(1), Some(2)], Bars::OURS);
     system.between([Some(0), Some(3)], Bars::OURS);
-    system.between([None, Some(3)], Rubbing { c: 0.3 });
+    system.between([None, Some(3)], CrossTerm { c: 0.3 });
     system.between([Some(3), Some(2)], Magnet { c: 0.6, e: Vector3::new(0.3, -0.2, 0.5) });
     system.between([Some(2), None], Dashpot { c: 0.2 });
     system.on(2, Drag { c: 0.1, J: rod(1.0, 0.0).J_d.to_inertia() });

@@ -48,7 +48,7 @@ impl Value {
 }
 
 /// An operation on values.
-type Made = Operation<Value>;
+type ValueOperation = Operation<Value>;
 
 /// A program under construction.
 ///
@@ -57,8 +57,8 @@ type Made = Operation<Value>;
 /// a zero, and for products of zero with what isn't finite.
 #[derive(Debug, Default)]
 pub struct Words {
-    operations: Vec<Made>,
-    known: BTreeMap<Made, Value>,
+    operations: Vec<ValueOperation>,
+    known: BTreeMap<ValueOperation, Value>,
     /// The evaluation of functions of known numbers, in a program that may differ by rounding.
     applied: Option<fn(Function, f64) -> f64>,
 }
@@ -77,7 +77,7 @@ impl Words {
         self.operations.len()
     }
 
-    fn push(&mut self, made: Made) -> Value {
+    fn push(&mut self, made: ValueOperation) -> Value {
         let operations = &mut self.operations;
         *self.known.entry(made).or_insert_with(|| {
             operations.push(made);
@@ -86,7 +86,7 @@ impl Words {
     }
 
     /// The operation that a value is the result of.
-    fn made(&self, value: Value) -> Option<Made> {
+    fn made(&self, value: Value) -> Option<ValueOperation> {
         match value {
             Value::Result(at) => self.operations.get(at).copied(),
             _ => None,
@@ -96,7 +96,7 @@ impl Words {
     /// The value whose negative this value is, if it is one.
     fn negated(&self, value: Value) -> Option<Value> {
         match self.made(value) {
-            Some(Made::Negate(a)) => Some(a),
+            Some(ValueOperation::Negate(a)) => Some(a),
             _ => None,
         }
     }
@@ -105,7 +105,7 @@ impl Words {
     pub fn negate(&mut self, a: Value) -> Value {
         match a.number() {
             Some(a) => Value::of(-a),
-            None => self.negated(a).unwrap_or_else(|| self.push(Made::Negate(a))),
+            None => self.negated(a).unwrap_or_else(|| self.push(ValueOperation::Negate(a))),
         }
     }
 
@@ -118,7 +118,7 @@ impl Words {
             _ => match (self.negated(a), self.negated(b)) {
                 (_, Some(b)) => self.subtract(a, b),
                 (Some(a), None) => self.subtract(b, a),
-                _ => self.push(Made::Add(a.min(b), a.max(b))),
+                _ => self.push(ValueOperation::Add(a.min(b), a.max(b))),
             },
         }
     }
@@ -131,7 +131,7 @@ impl Words {
             (_, Some(0.0)) => a,
             _ => match self.negated(b) {
                 Some(b) => self.add(a, b),
-                None => self.push(Made::Subtract(a, b)),
+                None => self.push(ValueOperation::Subtract(a, b)),
             },
         }
     }
@@ -148,7 +148,7 @@ impl Words {
             (Some(number), _) if self.applied.is_some() => self.collected(number, b),
             _ => match (self.negated(a), self.negated(b)) {
                 (Some(a), Some(b)) => self.multiply(a, b),
-                (None, None) => self.push(Made::Multiply(a, b)),
+                (None, None) => self.push(ValueOperation::Multiply(a, b)),
                 (x, y) => {
                     let product = self.multiply(x.unwrap_or(a), y.unwrap_or(b));
                     self.negate(product)
@@ -160,11 +160,11 @@ impl Words {
     /// A number times a value that may have a factor.
     fn collected(&mut self, number: f64, b: Value) -> Value {
         match self.made(b) {
-            Some(Made::Multiply(Value::Number(factor), c)) => {
+            Some(ValueOperation::Multiply(Value::Number(factor), c)) => {
                 self.multiply(Value::of(number * f64::from_bits(factor)), c)
             }
-            Some(Made::Negate(c)) => self.multiply(Value::of(-number), c),
-            _ => self.push(Made::Multiply(Value::of(number), b)),
+            Some(ValueOperation::Negate(c)) => self.multiply(Value::of(-number), c),
+            _ => self.push(ValueOperation::Multiply(Value::of(number), b)),
         }
     }
 
@@ -175,7 +175,7 @@ impl Words {
             (Some(0.0), _) => Value::ZERO,
             (_, Some(1.0)) => a,
             (_, Some(b)) if self.applied.is_some() && (1.0 / b).is_normal() => self.multiply(a, Value::of(1.0 / b)),
-            _ => self.push(Made::Divide(a, b)),
+            _ => self.push(ValueOperation::Divide(a, b)),
         }
     }
 
@@ -183,7 +183,7 @@ impl Words {
     pub fn apply(&mut self, function: Function, a: Value) -> Value {
         match (a.number(), self.applied) {
             (Some(a), Some(applied)) => Value::of(applied(function, a)),
-            _ => self.push(Made::Apply(function, a)),
+            _ => self.push(ValueOperation::Apply(function, a)),
         }
     }
 

@@ -8,11 +8,11 @@ use expect_test::expect_file;
 use proc_macro2::{LineColumn, TokenStream, TokenTree};
 
 use crate::common::{is_refused, tokens};
-use crate::texts::Declared;
+use crate::texts::TokenDeclaration;
 
 /// The expansion of a declaration, as the compiler gets it.
 fn expansion(declaration: &str) -> TokenStream {
-    if let Some(declared) = Declared::read(declaration) {
+    if let Some(declared) = TokenDeclaration::read(declaration) {
         return declared.expanded();
     }
     let body = tokens(declaration).into_iter().find_map(|token| match token {

@@ -23,14 +23,14 @@ use liestep_derivation::declared::{Declaration, Kind, Role, Tree, parse, parts};
 use liestep_derivation::judged::conserved;
 
 /// A declaration in tokens.
-pub(crate) struct Declared {
+pub(crate) struct TokenDeclaration {
     role: Role,
     arguments: TokenStream,
     item: TokenStream,
     expansion: OnceCell<TokenStream>,
 }
 
-impl Declared {
+impl TokenDeclaration {
     /// The declaration of a text, or `None` if the text doesn't begin with an attribute.
     pub(crate) fn read(text: &str) -> Option<Self> {
         let mut tokens = tokens(text).into_iter();
@@ -190,7 +190,7 @@ fn first_item(file: &syn::File) -> String {
 }
 
 /// A derived term by its name, for a comparison of two declarations.
-fn term(name: &str, declared: &Declared) -> String {
+fn term(name: &str, declared: &TokenDeclaration) -> String {
     let [arguments, item] = declared.text();
     let continuous = || equations(&arguments, &item).derived;
     match name {
@@ -209,7 +209,7 @@ fn term(name: &str, declared: &Declared) -> String {
 }
 
 /// The answer to a question about a declaration, and its name.
-fn answer(question: &str, text: &str, declared: &Declared, others: &[(String, Declared)]) -> String {
+fn answer(question: &str, text: &str, declared: &TokenDeclaration, others: &[(String, TokenDeclaration)]) -> String {
     if let Some((name, other)) = question.split_once(" as ") {
         let other = others.iter().find(|(own, _)| own == other).unwrap_or_else(|| panic!("no `{other}`"));
         let is_equal = term(name, declared) == term(name, &other.1);
@@ -295,13 +295,13 @@ fn filled(declaration: &str, row: &str) -> String {
 /// A text with its answers.
 fn answered(text: &str) -> String {
     let paragraphs = paragraphs(text);
-    let name = |declared: &Declared| {
+    let name = |declared: &TokenDeclaration| {
         let item: syn::ItemStruct = syn::parse2(declared.item.clone()).expect("a struct");
         item.ident.to_string()
     };
     let whole = paragraphs.iter().filter(|paragraph| !paragraph.declaration.contains('…'));
     let others = whole.map(|paragraph| {
-        let declared = Declared::read(&paragraph.declaration).expect("an attribute");
+        let declared = TokenDeclaration::read(&paragraph.declaration).expect("an attribute");
         (name(&declared), declared)
     });
     let others: Vec<_> = others.collect();
@@ -312,7 +312,7 @@ fn answered(text: &str) -> String {
     let answered = paragraphs.iter().map(|Paragraph { declaration, questions, rows }| {
         let mut lines = vec![declaration.clone()];
         if rows.is_empty() {
-            let declared = Declared::read(declaration).expect("an attribute");
+            let declared = TokenDeclaration::read(declaration).expect("an attribute");
             for question in questions {
                 lines.push(format!("^ {question}"));
                 lines.extend(indented(answer(question, declaration, &declared, &others)));
@@ -325,7 +325,7 @@ fn answered(text: &str) -> String {
             lines.push((*row).to_owned());
             if row.starts_with('…') {
                 let text = filled(declaration, row);
-                let declared = Declared::read(&text).expect("an attribute").with_named_fields();
+                let declared = TokenDeclaration::read(&text).expect("an attribute").with_named_fields();
                 lines.extend(
                     questions.iter().flat_map(|question| indented(answer(question, &text, &declared, &others))),
                 );

@@ -5,7 +5,7 @@
 //! orbit of the group. The momentum along the `η` with `η·w = 0` moves as on the subgroup of these, so the subgroup's
 //! Casimirs of it are conserved. There are no others: their number is the corank of `B(z)`.
 
-use checks::solvers::Badly;
+use checks::solvers::InaccurateSolver;
 use declarations::{DoublePendulum, TwoBodies};
 use liestep::groups::{Advected, LieGroup, R3, SE2};
 use liestep::laws::samples::{Random, derivative};
@@ -124,13 +124,13 @@ impl<W, const D: usize> Orbit<'_, W, D> {
         L: DiscreteLagrangian<Scalar = f64, Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>, Advected = W>
             + Regular
             + Clone,
-        Badly<L>: DiscreteLagrangian<Scalar = f64, Group = L::Group, Advected = W> + Regular,
+        InaccurateSolver<L>: DiscreteLagrangian<Scalar = f64, Group = L::Group, Advected = W> + Regular,
         W: Advected<L::Group>,
     {
         let (off, _) = self.run(l, h, attitude, velocity);
-        let (badly, least) = self.run(&Badly(l.clone()), h, attitude, velocity);
+        let (badly, least) = self.run(&InaccurateSolver(l.clone()), h, attitude, velocity);
         println!("off by {off:.1e}; where (2.7) is missed by {least:.1e} at least, by {badly:.1e}");
-        // The bound is a walk of roundings: √STEPS ε is 3e-14, and a step has several. `Badly` has errors of some
+        // The bound is a walk of roundings: √STEPS ε is 3e-14, and a step has several. `InaccurateSolver` has errors of some
         // thousandths.
         assert!(off < 3e-13 && badly < 3e-13 && least > 1e-4, "{off:e} {badly:e} {least:e}");
     }
@@ -265,15 +265,20 @@ struct Tether {
     anchor: Point2<f64>,
 }
 
-type Seen = ([Vector3<f64>; 2], liestep::groups::SeenFrom<1, Point2<f64>>);
+type AdvectedPair = ([Vector3<f64>; 2], liestep::groups::SeenFrom<1, Point2<f64>>);
 /// Velocities or momenta of both bodies.
 type OfBoth = Bodies<Vector3<f64>, 2>;
 
 /// Checks that each body's parameters are advected by its own configuration, and that the functions are conserved.
 /// Returns the least and the largest error of (2.7).
-fn assert_p3<S>(scene: S, start: [SE2; 2], velocity: OfBoth, kept: impl Fn(&Seen, &OfBoth) -> [f64; 4]) -> [f64; 2]
+fn assert_p3<S>(
+    scene: S,
+    start: [SE2; 2],
+    velocity: OfBoth,
+    kept: impl Fn(&AdvectedPair, &OfBoth) -> [f64; 4],
+) -> [f64; 2]
 where
-    S: DiscreteLagrangian<Scalar = f64, Group = [SE2; 2], Advected = Seen> + Regular,
+    S: DiscreteLagrangian<Scalar = f64, Group = [SE2; 2], Advected = AdvectedPair> + Regular,
 {
     let spatial = scene.advected();
     let (stepper, mut state) = started(scene, 0.01, (start, velocity));
@@ -324,12 +329,12 @@ fn p3_plates_in_a_field() {
     let place = |angle: f64, x: f64| SE2::from_rotation_and_translation(UnitComplex::new(angle), Vector2::new(x, -0.2));
     let (start, velocity) =
         ([place(0.8, 0.5), place(-0.3, 1.4)], Bodies([Vector3::new(1.2, 0.4, -0.3), Vector3::new(-0.7, 0.2, 0.5)]));
-    let kept = |w: &Seen, Bodies(mu): &OfBoth| {
+    let kept = |w: &AdvectedPair, Bodies(mu): &OfBoth| {
         let potential = w.0[1].dot(&w.1.0.to_homogeneous());
         [w.0[0].xy().norm(), w.0[1].xy().norm(), mu[0].yz().perp(&w.0[0].xy()), potential]
     };
     let [_, most] = assert_p3(scene, start, velocity, kept);
-    let [least, _] = assert_p3(Badly(scene), start, velocity, kept);
-    // A solve ends at rounding, and `Badly` has errors of some thousandths.
+    let [least, _] = assert_p3(InaccurateSolver(scene), start, velocity, kept);
+    // A solve ends at rounding, and `InaccurateSolver` has errors of some thousandths.
     assert!(most < 1e-12 && least > 1e-4, "{most:e} {least:e}");
 }

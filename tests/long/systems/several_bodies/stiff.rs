@@ -193,7 +193,7 @@ where
         - 0.5 * h * c * (r + 0.5 * (d_2 - d_1)).norm_squared(),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Held {
+struct TurnPotential {
     c: f64,
 }
 
@@ -202,7 +202,7 @@ struct Held {
 #[test]
 fn steps_of_a_row_beyond_a_right_angle_are_refused() {
     let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0, 1.0, 1.0)).unwrap();
-    let l = Each::<2>::of([FloatingBody { m: 1.0, J_d }]) + Coupling::<2>::of([Held { c: 1.0 }]);
+    let l = Each::<2>::of([FloatingBody { m: 1.0, J_d }]) + Coupling::<2>::of([TurnPotential { c: 1.0 }]);
     let stepper = Stepper::new(l, 1.0).unwrap();
     let turned = |angles: [f64; 2]| angles.map(|angle| (SO3::exp(Vector3::z() * angle), R3::identity()));
     let stepped = |angles: [f64; 2]| {
@@ -248,7 +248,7 @@ fn masses_that_cannot_turn_are_not_said_to() {
 /// A rigid body on SE(3).
 #[lagrangian(group = SE3, l_d = ((F - I) * K * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Floating {
+struct SE3Body {
     K: Matrix4<f64>,
 }
 
@@ -256,7 +256,7 @@ struct Floating {
 #[test]
 fn bodies_that_are_only_shifted_are_not_blamed() {
     let K = Matrix4::from_diagonal(&Vector4::new(0.5, 0.5, 0.5, 2.0));
-    let stepper = Stepper::new(Each::<3>::of([Floating { K }]), 1.0).unwrap();
+    let stepper = Stepper::new(Each::<3>::of([SE3Body { K }]), 1.0).unwrap();
     let velocities =
         [Vector6::x() * 0.2, Vector6::z() * 3.0, Vector6::y() * 0.1 + Vector6::new(0.0, 0.0, 0.0, 7.0, 0.0, 0.0)];
     let mut state = stepper.start([SE3::identity(); 3], Bodies(velocities)).unwrap();

@@ -1,7 +1,7 @@
 //! Bodies with translations: a top on a cart, two bodies that attract each other, a spacecraft with wheels.
 
 use checks::drift::tenths;
-use checks::solvers::Badly;
+use checks::solvers::InaccurateSolver;
 use declarations::motions::{number, read, vector};
 use declarations::{FloatingBody, Gyrostat, PointSpring, TopOnCart, TwoBodies};
 use liestep::groups::{LieGroup, R1, R2, R3};
@@ -138,9 +138,9 @@ fn solved_badly<L, const D: usize>(
 ) -> [liestep::motion::Motion<L::Group, L::Advected>; 2]
 where
     L: DiscreteLagrangian<Scalar = f64, Group: LieGroup<Scalar = f64, Vector = SVector<f64, D>>> + Clone,
-    Badly<L>: DiscreteLagrangian<Scalar = f64, Group = L::Group, Advected = L::Advected> + Regular,
+    InaccurateSolver<L>: DiscreteLagrangian<Scalar = f64, Group = L::Group, Advected = L::Advected> + Regular,
 {
-    let (badly, mut state) = started(Badly(system.clone()), 0.01, (start, *velocity));
+    let (badly, mut state) = started(InaccurateSolver(system.clone()), 0.01, (start, *velocity));
     let (before, mut least) = (*state, f64::INFINITY);
     for _ in 0..1000 {
         let last = state;

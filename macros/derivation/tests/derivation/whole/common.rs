@@ -177,13 +177,13 @@ pub(super) fn carried(actions: &[(Action, (usize, usize))]) -> Vec<Carried> {
 }
 
 /// A step of a declaration with the arrays that its programs read.
-pub(super) struct Moving<T> {
+pub(super) struct StepInputs<T> {
     pub(super) step: WholeStep,
     pub(super) half: Vec<T>,
     pub(super) numbers: Numbers<T>,
 }
 
-impl<T: Number> Moving<T> {
+impl<T: Number> StepInputs<T> {
     /// A step with random numbers, from the identity.
     pub(super) fn of(staged: &StagedDeclaration, mut next: impl FnMut() -> T) -> Self {
         let step = WholeStep::of(staged).expect("a step");

@@ -12,7 +12,7 @@ use liestep_derivation::{Action, Array};
 use crate::common::random::Random;
 
 use super::common::{
-    Generators, Moving, affine, are_equal, carried, declared, difference, exact, groups, named, sl3, so,
+    Generators, StepInputs, affine, are_equal, carried, declared, difference, exact, groups, named, sl3, so,
 };
 
 fn form_of(generators: &Generators) -> (Form, Chart) {
@@ -83,12 +83,12 @@ fn determinant(g: &Value<Residue>) -> Residue {
 }
 
 /// A step from a random element of the group, that element, and the element after the step.
-fn moved(name: &str, generators: &Generators, seed: u64) -> (Moving<Residue>, Value<Residue>, Value<Residue>) {
+fn moved(name: &str, generators: &Generators, seed: u64) -> (StepInputs<Residue>, Value<Residue>, Value<Residue>) {
     let mut next = Residue::stream(seed);
     let staged = declared(from_ref(generators), Vec::new());
-    let start = Moving::of(&staged, &mut next);
+    let start = StepInputs::of(&staged, &mut next);
     let g = start.finished()[..start.step.sizes.entries].to_vec();
-    let moving = Moving::of(&staged, next).with(Array::Attitude, &g);
+    let moving = StepInputs::of(&staged, next).with(Array::Attitude, &g);
     let (g, f) = (moving.matrices(&g).remove(0), moving.increments().remove(0));
     assert!(!are_equal(&f, &Value::identity(f.rows)), "{name}");
     (moving, g, f)
@@ -129,7 +129,7 @@ fn momentum_is_carried_by_the_coadjoint_action() {
         let state = moving.finished();
         let after = &state[sizes.momentum()..sizes.advected()];
         assert_eq!(after, adjoint(&f, &target), "{name}");
-        let in_space = |moving: &Moving<Residue>| moving.numbers.run(&moving.step.programs.spatial);
+        let in_space = |moving: &StepInputs<Residue>| moving.numbers.run(&moving.step.programs.spatial);
         let before = in_space(&moving);
         assert_eq!(before, adjoint(&g.inverse(), &target), "{name}");
         let end = state[..sizes.advected()].to_vec();
@@ -165,9 +165,9 @@ fn are_as_by_hand(factors: &[Generators], has_points: bool) {
     actions.retain(|(action, _)| has_points || !matches!(action, Action::Point(_)));
     let staged = declared(factors, carried(&actions));
     let mut next = Residue::stream(7);
-    let start = Moving::of(&staged, &mut next);
+    let start = StepInputs::of(&staged, &mut next);
     let g = start.finished()[..start.step.sizes.entries].to_vec();
-    let moving = Moving::of(&staged, next).with(Array::Attitude, &g);
+    let moving = StepInputs::of(&staged, next).with(Array::Attitude, &g);
     let g = moving.matrices(&g);
     let (parameters, seen) = (&moving.numbers, moving.numbers.run(&moving.step.programs.seen));
     let spatial = &parameters.0.iter().find(|(array, _)| *array == Array::Parameters).expect("parameters").1;
@@ -236,7 +236,7 @@ fn reflections_are_not_rotations() {
     for (name, generators) in groups().into_iter().filter(|(name, _)| name.starts_with("SO") || name.starts_with("SE"))
     {
         let mut random = Random::new(29);
-        let moving = Moving::of(&declared(&[generators], Vec::new()), || 0.3 * random.signed());
+        let moving = StepInputs::of(&declared(&[generators], Vec::new()), || 0.3 * random.signed());
         let mut g = moving.increments().remove(0);
         (0..g.rows).for_each(|j| g.entries[j] = -g.entries[j]);
         let defect = moving.numbers.with(Array::Attitude, &g.entries).run(&moving.step.programs.defect)[0];
@@ -251,7 +251,7 @@ fn attitudes_are_restored() {
     for (name, generators) in groups() {
         let staged = declared(from_ref(&generators), Vec::new());
         let mut random = Random::new(13);
-        let moving = Moving::of(&staged, || 0.3 * random.signed());
+        let moving = StepInputs::of(&staged, || 0.3 * random.signed());
         let mut g = moving.increments().remove(0);
         let defect = |g: &Value| moving.numbers.with(Array::Attitude, &g.entries).run(&moving.step.programs.defect)[0];
         assert!(defect(&g) < 1e-14, "{name}");

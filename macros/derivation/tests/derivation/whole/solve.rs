@@ -7,12 +7,12 @@ use liestep_derivation::judged::verify::value::Value;
 use liestep_derivation::whole::{Value as Symbol, Words};
 use liestep_derivation::{Array, Program, Source, StagedDeclaration};
 
-use super::common::{Generators, Moving, affine, are_equal, declared, groups, named, run, sl3, so};
+use super::common::{Generators, StepInputs, affine, are_equal, declared, groups, named, run, sl3, so};
 
 /// Asserts that the solution satisfies `J u = r`, and that the determinants are those of the blocks.
 fn solves(name: &str, staged: &StagedDeclaration, is_zero: impl Fn(usize, usize) -> bool) {
     let mut next = Residue::stream(17);
-    let moving = Moving::of(staged, &mut next);
+    let moving = StepInputs::of(staged, &mut next);
     let (n, dets) = (moving.step.sizes.n, moving.step.sizes.dets);
     let mut constants: Vec<Residue> = (0..n + n * n).map(|_| next()).collect();
     for at in (0..n * n).filter(|at| is_zero(at / n, at % n)) {
@@ -123,7 +123,7 @@ fn of_increments(factors: &[Generators]) -> StagedDeclaration {
 fn is_linearised(name: &str, factors: &[Generators]) {
     let staged = of_increments(factors);
     let mut next = Residue::stream(19);
-    let moving = Moving::of(&staged, &mut next);
+    let moving = StepInputs::of(&staged, &mut next);
     let sizes = moving.step.sizes.clone();
     let (n, coefficients) = (sizes.n, (0..sizes.n * sizes.entries).map(|_| next()).collect::<Vec<Residue>>());
     let moving = moving.with(Array::Parameters, &coefficients);
@@ -171,7 +171,7 @@ fn tangents_are_derivatives() {
 fn a_system_of_three_has_few_operations() {
     let staged = declared(&[named("SO3")], Vec::new());
     let count = |program: &Program| program.operations.len();
-    let programs = Moving::of(&staged, Residue::stream(1)).step.programs;
+    let programs = StepInputs::of(&staged, Residue::stream(1)).step.programs;
     // Counts of operations: the residual has three rows of six; nine minors have three operations each, and the
     // determinant five; a solution has the reciprocal and three rows of six, and both squares five.
     assert_eq!((count(&programs.iterate), count(&programs.again)), (18 + 32 + 32, 18 + 32));

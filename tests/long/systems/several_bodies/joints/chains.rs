@@ -11,25 +11,25 @@ use nalgebra::{Vector3, Vector6};
 
 use super::super::links::{irregular, rods};
 use super::super::{apart, part};
-use super::{Body, Components, EPSILON, Free, Held, Joined, falling, jointed, row, six, watched};
+use super::{Body, Components, Connection, EPSILON, Linkage, MassAndInertia, falling, jointed, row, six, watched};
 
 /// The bodies and joints of a chain, with coordinates about the centres of mass.
-fn with_joints<const N: usize>(chain: &Chain<N>, h: f64) -> Held<N> {
+fn with_joints<const N: usize>(chain: &Chain<N>, h: f64) -> Linkage<N> {
     checked(chain, h).unwrap()
 }
 
-fn checked<const N: usize>(chain: &Chain<N>, h: f64) -> Result<Held<N>, SetupError> {
+fn checked<const N: usize>(chain: &Chain<N>, h: f64) -> Result<Linkage<N>, SetupError> {
     let bodies = chain.links.map(|link| {
         let central = link.J_d.as_matrix() - link.c * link.c.transpose() * link.m;
-        Free { m: link.m, K: NonstandardInertia::new(central).unwrap() }
+        MassAndInertia { m: link.m, K: NonstandardInertia::new(central).unwrap() }
     });
     let joints: [_; N] = from_fn(|k| {
         let below = -chain.links[k].c;
         if k == 0 {
-            return Joined::to_space(Joint::ball([Vector3::zeros(), below]), 0);
+            return Connection::to_space(Joint::ball([Vector3::zeros(), below]), 0);
         }
         let upper = chain.links[k - 1];
-        Joined::between(Joint::ball([upper.rho - upper.c, below]), k - 1, k)
+        Connection::between(Joint::ball([upper.rho - upper.c, below]), k - 1, k)
     });
     jointed(falling(bodies, chain.g, chain.up), &joints, h)
 }
@@ -137,21 +137,21 @@ fn a_tree() {
         let vector: Vector3<f64> = random.sample();
         vector * size
     };
-    let bodies: [Free; N] = from_fn(|_| Free {
+    let bodies: [MassAndInertia; N] = from_fn(|_| MassAndInertia {
         m: 0.5 + next(1.0).x.abs(),
         K: NonstandardInertia::from_principal_moments(Vector3::new(0.05, 0.06, 0.07) + next(0.01)).unwrap(),
     });
     let points: [[Vector3<f64>; 2]; N] = from_fn(|_| [next(0.5), next(0.5)]);
     let parents = [None, Some(0), Some(0), Some(0), Some(2)];
-    let straight: [Joined<Joint>; N] = from_fn(|k| {
+    let straight: [Connection<Joint>; N] = from_fn(|k| {
         let joint = Joint::ball(points[k]);
-        Joined { joint, above: parents[k], below: k }
+        Connection { joint, above: parents[k], below: k }
     });
-    let turned: [Joined<Joint>; N] = from_fn(|k| {
-        let Joined { above, below, .. } = straight[N - 1 - k];
+    let turned: [Connection<Joint>; N] = from_fn(|k| {
+        let Connection { above, below, .. } = straight[N - 1 - k];
         let [upper, lower] = points[N - 1 - k];
         let back = Joint::ball([lower, upper]);
-        above.map_or(straight[N - 1 - k], |above| Joined::between(back, below, above))
+        above.map_or(straight[N - 1 - k], |above| Connection::between(back, below, above))
     });
     let about: [Body; N] = from_fn(|_| {
         let turn: SO3 = <CayleyRetraction as Retraction<SO3>>::retract(&next(1.0));
@@ -203,23 +203,23 @@ fn errors_name_the_joint() {
     assert!(found.iter().zip(stepper.velocities(&right)).all(|(a, b)| (a - b).amax() < 1e-13));
 
     let (end, link) = (Vector3::z(), Joint::ball([Vector3::z(), -Vector3::z()]));
-    let bodies = falling([Free { m: 1.0, K: rods::<1>(1.0).links[0].J_d }; 3], 9.81, Vector3::z());
-    let refused = |joints: [Joined<Joint>; 2]| jointed(bodies, &joints, 0.01).unwrap_err();
-    let first = Joined::between(link, 0, 1);
-    assert!(matches!(refused([first, Joined::between(link, 1, 3)]), SetupError::Joint { joint: 1, .. }));
-    assert!(matches!(refused([first, Joined::between(link, 2, 2)]), SetupError::Joint { joint: 1, .. }));
+    let bodies = falling([MassAndInertia { m: 1.0, K: rods::<1>(1.0).links[0].J_d }; 3], 9.81, Vector3::z());
+    let refused = |joints: [Connection<Joint>; 2]| jointed(bodies, &joints, 0.01).unwrap_err();
+    let first = Connection::between(link, 0, 1);
+    assert!(matches!(refused([first, Connection::between(link, 1, 3)]), SetupError::Joint { joint: 1, .. }));
+    assert!(matches!(refused([first, Connection::between(link, 2, 2)]), SetupError::Joint { joint: 1, .. }));
     // Two ball joints at different points of two bodies close a loop, and are redundant in part.
-    let twice = [first, Joined::between(Joint::ball([-end, end]), 1, 0)];
+    let twice = [first, Connection::between(Joint::ball([-end, end]), 1, 0)];
     let redundant = jointed(bodies, &twice, 0.01).unwrap();
     let at = [0.0, 2.0, 9.0].map(|z| (SO3::identity(), R3::from(Vector3::z() * z)));
     let error_of_two = redundant.start(&at, &[Vector6::zeros(); 3]).unwrap_err();
     assert!(matches!(error_of_two, SetupError::RedundantJoint { joint: 1, .. }), "{error_of_two}");
     let broken = Joint::ball([end, Vector3::new(0.0, f64::NAN, 0.0)]);
-    let broken = refused([first, Joined::between(broken, 1, 2)]);
+    let broken = refused([first, Connection::between(broken, 1, 2)]);
     assert!(matches!(broken, SetupError::JointParameter { joint: 1, field: "below", .. }), "{broken}");
     let (axis_above, axis_below) = (Vector3::zeros(), Vector3::x());
     let pin = Joint::pin([Vector3::z(), Vector3::z()], [axis_above, axis_below]);
-    let broken = jointed(bodies, &[Joined::between(pin, 0, 1)], 0.01).unwrap_err();
+    let broken = jointed(bodies, &[Connection::between(pin, 0, 1)], 0.01).unwrap_err();
     assert!(matches!(broken, SetupError::JointParameter { joint: 0, field: "axis_above", .. }), "{broken}");
     assert!(matches!(checked(&chain, f64::NAN), Err(SetupError::InvalidStep { .. })));
 
@@ -243,8 +243,8 @@ fn small_and_slow() {
         let moments = Vector3::new(0.02, 0.1, 0.1) * (mass * size * size);
         let K = NonstandardInertia::from_principal_moments(moments).unwrap();
         let link = Joint::ball([e, -e]);
-        let joints = [Joined::between(link, 0, 1), Joined::between(link, 1, 2)];
-        let stepper = jointed(falling([Free { m: mass, K }; 3], 0.0, Vector3::z()), &joints, 0.01).unwrap();
+        let joints = [Connection::between(link, 0, 1), Connection::between(link, 1, 2)];
+        let stepper = jointed(falling([MassAndInertia { m: mass, K }; 3], 0.0, Vector3::z()), &joints, 0.01).unwrap();
         let about = row([0.9, 0.2, -0.5]).0.map(|(turn, place)| (turn, R3::from(place.translation() * size)));
         for rate in [0.0, 1e-7, 1.0] {
             let moving = [six(&(Vector3::new(0.3, 1.0, -0.2) * rate), &Vector3::zeros()); 3];

@@ -15,8 +15,8 @@ use nalgebra::{SVector, UnitQuaternion, Vector3, Vector6};
 use super::super::{all, apart};
 use super::loops::{closed_loop, loop_of_three, state_of};
 use super::{
-    Components, EPSILON, Free, Held, Joined, LEFT, RIGHT, assert_no_work, ball, chained, falling, jointed, plain, rod,
-    row, six, system,
+    Components, Connection, EPSILON, LEFT, Linkage, MassAndInertia, RIGHT, assert_no_work, ball, chained, falling,
+    jointed, plain, rod, row, six, system,
 };
 
 /// A force that is prescribed for each step: if it is the weight of the bodies, the step is that under gravity, and
@@ -27,7 +27,7 @@ fn a_control_force() {
     let heavy = closed_loop(0.01);
     let data = &read("closed loop")["parameters"];
     let weights = all(&data["bodies"], |body| number(&body["m"]) * number(&data["g"]));
-    let bodies = all(&data["bodies"], |body| Free {
+    let bodies = all(&data["bodies"], |body| MassAndInertia {
         m: number(&body["m"]),
         K: NonstandardInertia::from_principal_moments(plain(&body["J"])).unwrap(),
     });
@@ -52,11 +52,11 @@ fn a_loop_that_a_pin_closes_is_driven() {
     let pin = |above, below| Joint::pin([above, below], [Vector3::y(), Vector3::new(0.2, 2.0, 0.0)]);
     let (places, corner) = row([0.9, 0.0, -0.9]);
     let tree = [
-        Joined::to_space(ball(Vector3::zeros(), LEFT), 0),
-        Joined::between(pin(RIGHT, LEFT), 0, 1),
-        Joined::between(ball(RIGHT, LEFT), 1, 2),
+        Connection::to_space(ball(Vector3::zeros(), LEFT), 0),
+        Connection::between(pin(RIGHT, LEFT), 0, 1),
+        Connection::between(ball(RIGHT, LEFT), 1, 2),
     ];
-    let last = Joined::to_space(pin(corner, RIGHT), 2);
+    let last = Connection::to_space(pin(corner, RIGHT), 2);
     let joints = [tree[0], tree[1], tree[2], last];
     let stepper = jointed(falling([1.0, 0.7, 1.2].map(rod), 9.81, Vector3::z()), &joints, 0.005).unwrap();
     let mut random = Random::new(4);
@@ -103,7 +103,7 @@ fn bodies_that_joints_and_springs_hold() {
         for k in 1..N {
             system.between([Some(k - 1), Some(k)], cord(stiffness));
         }
-        Held { bodies, stepper: system.stepper(h).unwrap() }
+        Linkage { bodies, stepper: system.stepper(h).unwrap() }
     };
     let (stepper, free) = (of(30.0, 0.005), of(0.0, 0.005));
     let mut random = Random::new(9);
@@ -143,8 +143,9 @@ fn a_load_under_a_quadrotor() {
     let (m, m_load, g, up, cable) = (1.0, 0.4, 9.81, Vector3::z(), Vector3::new(0.1, 0.05, -0.9));
     for h in [0.01, -0.005] {
         let declared = Stepper::new(SuspendedLoad { J_d, m, K, m_load, cable, g, up }, h).unwrap();
-        let joint = Joined::between(Joint::ball([Vector3::zeros(), -cable]), 0, 1);
-        let two = jointed(falling([Free { m, K: J_d }, Free { m: m_load, K }], g, up), &[joint], h).unwrap();
+        let joint = Connection::between(Joint::ball([Vector3::zeros(), -cable]), 0, 1);
+        let two = jointed(falling([MassAndInertia { m, K: J_d }, MassAndInertia { m: m_load, K }], g, up), &[joint], h)
+            .unwrap();
         let mut random = Random::new(31);
         let [attitude, hanging] =
             [0.4, -0.7].map(|angle| SO3::from(UnitQuaternion::from_scaled_axis(Vector3::new(angle, 0.2, -angle))));

@@ -9,7 +9,7 @@ use liestep::{SO3, force};
 use nalgebra::{Vector3, Vector6};
 
 use super::super::apart;
-use super::{Body, Components, EPSILON, Held, RIGHT, assert_no_work, ball, chained, falling, rod, row, system};
+use super::{Body, Components, EPSILON, Linkage, RIGHT, assert_no_work, ball, chained, falling, rod, row, system};
 
 /// Friction by the relative angular velocity, half of its impulse at either end of a step.
 #[force(
@@ -29,17 +29,17 @@ struct Friction {
 const N: usize = 3;
 
 /// A chain with friction in all its joints but the pivot.
-fn rubbing(c: f64, h: f64) -> Held<N> {
+fn rubbing(c: f64, h: f64) -> Linkage<N> {
     let bodies = falling([rod(1.0); N], 9.81, Vector3::z());
     let mut system = system(bodies, &chained::<N>());
     for k in 1..N {
         system.between([Some(k - 1), Some(k)], Friction { c });
     }
-    Held { bodies, stepper: system.stepper(h).unwrap() }
+    Linkage { bodies, stepper: system.stepper(h).unwrap() }
 }
 
 /// The start of all chains: bent, and thrown.
-fn thrown(held: &Held<N>) -> Box<[f64]> {
+fn thrown(held: &Linkage<N>) -> Box<[f64]> {
     let mut random = Random::new(9);
     let moving: Components<N> = from_fn(|_| random.sample());
     held.start_nearest(&row([0.9, 0.2, -0.7]).0, &moving).unwrap()
@@ -143,7 +143,7 @@ fn a_loop_with_friction_comes_to_rest() {
             system.between([k.checked_sub(1), Some(k)], Friction { c: 0.4 });
         }
         system.between([Some(0), Some(2)], Friction { c: 0.1 });
-        Held { bodies, stepper: system.stepper(h).unwrap() }
+        Linkage { bodies, stepper: system.stepper(h).unwrap() }
     };
     let of = |h: f64, steps: u64| {
         let held = held(h);

@@ -12,7 +12,9 @@ use liestep::{NonstandardInertia, SO3, SetupError, constraint};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3, Vector6};
 
 use super::super::apart;
-use super::{Body, Components, EPSILON, Free, Joined, assert_no_work, falling, jointed, place, rod, six, watched};
+use super::{
+    Body, Components, Connection, EPSILON, MassAndInertia, assert_no_work, falling, jointed, place, rod, six, watched,
+};
 
 /// Checks that a constraint's slopes are the derivatives of its gaps, for turns and shifts of either body.
 fn check_slopes<C: Constraint<K>, const K: usize>(joint: &C, random: &mut Random) {
@@ -125,7 +127,7 @@ struct Sleeve {
     ),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Anything {
+struct UnphysicalConstraint {
     A: Matrix3<f64>,
     k: f64,
     e: Vector3<f64>,
@@ -143,7 +145,7 @@ fn declared_constraints() {
         let ball = DeclaredBall { above, below };
         let strut = DeclaredStrut { above, below, length: 0.7 };
         let sleeve = Sleeve { first: next(), second: next(), axis: next() };
-        let anything = Anything {
+        let anything = UnphysicalConstraint {
             A: Matrix3::identity() * 2.0 + Matrix3::from_columns(&[next(), next(), next()]) * 0.3,
             k: 0.4,
             e: next(),
@@ -182,7 +184,7 @@ fn a_sleeve_on_a_rail() {
     let attitude = SO3::from(nalgebra::UnitQuaternion::rotation_between(&Vector3::z(), &along).unwrap());
     let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.03, 0.04)).unwrap();
     let mut system = Multibody::new();
-    let [body] = falling([Free { m: 1.3, K }], g, Vector3::z());
+    let [body] = falling([MassAndInertia { m: 1.3, K }], g, Vector3::z());
     let body = system.body(body);
     system.join(Sleeve { first, second, axis: Vector3::z() }, None, body);
     let stepper = system.stepper(h).unwrap();
@@ -234,8 +236,8 @@ fn a_pendulum_on_a_pin() {
     let K = NonstandardInertia::from_principal_moments(moments).unwrap();
     let pivot = Vector3::new(0.3, -0.2, 1.0);
     let pin = Joint::pin([pivot, Vector3::x() * -reach], [Vector3::y() * 2.0, Vector3::z()]);
-    let bodies = falling([Free { m, K }], 9.81, Vector3::z());
-    let stepper = jointed(bodies, &[Joined::to_space(pin, 0)], h).unwrap();
+    let bodies = falling([MassAndInertia { m, K }], 9.81, Vector3::z());
+    let stepper = jointed(bodies, &[Connection::to_space(pin, 0)], h).unwrap();
     // From hanging along −z the angle turns towards −x.
     let attitude = |angle: f64| {
         let hanging = Matrix3::from_columns(&[-Vector3::z(), -Vector3::x(), Vector3::y()]);
@@ -276,8 +278,8 @@ fn a_wheel_on_its_axle() {
     let axis = Vector3::new(0.3, -0.7, 0.2);
     for centre in [Vector3::zeros(), Vector3::new(1e6, 0.0, 0.0)] {
         let pin = Joint::pin([centre, Vector3::zeros()], [axis, Vector3::z()]);
-        let bodies = falling([Free { m: 5.0, K }], 0.0, Vector3::z());
-        let stepper = jointed(bodies, &[Joined::to_space(pin, 0)], 0.01).unwrap();
+        let bodies = falling([MassAndInertia { m: 5.0, K }], 0.0, Vector3::z());
+        let stepper = jointed(bodies, &[Connection::to_space(pin, 0)], 0.01).unwrap();
         let attitude = nalgebra::Rotation3::rotation_between(&Vector3::z(), &axis).unwrap();
         let about = [(SO3::try_from(*attitude.matrix()).unwrap(), R3::from(centre))];
         for rate in [0.0, 1e-7, 3.0] {
@@ -367,9 +369,10 @@ fn a_joint_of_ones_own() {
     let strut = |called, length| Strut { called, above: Vector3::new(0.1, 0.3, -0.2), below: -Vector3::x(), length };
     check_slopes(&strut("strut", 0.7), &mut Random::new(6));
     let K = NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.09)).unwrap();
-    let bodies = falling([1.0, 0.7].map(|m| Free { m, K }), 9.81, Vector3::z());
-    let joined =
-        |called, length| [Joined::to_space(strut(called, 0.5), 0), Joined::between(strut(called, length), 0, 1)];
+    let bodies = falling([1.0, 0.7].map(|m| MassAndInertia { m, K }), 9.81, Vector3::z());
+    let joined = |called, length| {
+        [Connection::to_space(strut(called, 0.5), 0), Connection::between(strut(called, length), 0, 1)]
+    };
     let of = |called, length| jointed(bodies, &joined(called, length), 0.005);
     let refused = of("strut", -1.0).unwrap_err();
     assert!(matches!(refused, SetupError::JointParameter { joint: 1, field: "length", .. }), "{refused}");
@@ -407,9 +410,9 @@ fn a_loop_of_struts_that_whips() {
     let bodies = falling([1.0, 0.7].map(rod), 9.81, Vector3::z());
     let at = Vector3::new(0.1, 0.3, -0.2);
     let all = [
-        Joined::to_space(strut(at, -Vector3::x(), 0.5), 0),
-        Joined::between(strut(at, -Vector3::x(), 0.8), 0, 1),
-        Joined::to_space(strut(Vector3::new(1.5, 0.3, 0.4), Vector3::x(), 0.6), 1),
+        Connection::to_space(strut(at, -Vector3::x(), 0.5), 0),
+        Connection::between(strut(at, -Vector3::x(), 0.8), 0, 1),
+        Connection::to_space(strut(Vector3::new(1.5, 0.3, 0.4), Vector3::x(), 0.6), 1),
     ];
     let mut random = Random::new(7);
     let about: [Body; 2] = from_fn(|k| {

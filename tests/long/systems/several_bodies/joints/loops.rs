@@ -14,27 +14,27 @@ use serde_json::Value;
 
 use super::super::{all, apart, order};
 use super::{
-    Body, Components, EPSILON, Free, Held, Joined, LEFT, RIGHT, assert_no_work, ball, chained, falling, jointed, plain,
-    rod, row, six, system, watched,
+    Body, Components, Connection, EPSILON, LEFT, Linkage, MassAndInertia, RIGHT, assert_no_work, ball, chained,
+    falling, jointed, plain, rod, row, six, system, watched,
 };
 
 /// The joints of the reference's closed loop.
-pub(super) fn loop_of_three() -> [Joined<Joint>; 4] {
+pub(super) fn loop_of_three() -> [Connection<Joint>; 4] {
     let data = &read("closed loop")["parameters"];
     let end = |body: usize, side: &str| plain(&data["bodies"][body][side]);
     let tree = [
-        Joined::to_space(ball(Vector3::zeros(), end(0, "left")), 0),
-        Joined::between(ball(end(0, "right"), end(1, "left")), 0, 1),
-        Joined::between(ball(end(1, "right"), end(2, "left")), 1, 2),
+        Connection::to_space(ball(Vector3::zeros(), end(0, "left")), 0),
+        Connection::between(ball(end(0, "right"), end(1, "left")), 0, 1),
+        Connection::between(ball(end(1, "right"), end(2, "left")), 1, 2),
     ];
-    let last = Joined::to_space(ball(plain(&data["pivot"]), end(2, "right")), 2);
+    let last = Connection::to_space(ball(plain(&data["pivot"]), end(2, "right")), 2);
     [tree[0], tree[1], tree[2], last]
 }
 
 /// The closed loop of the reference.
-pub(super) fn closed_loop(h: f64) -> Held<3> {
+pub(super) fn closed_loop(h: f64) -> Linkage<3> {
     let data = &read("closed loop")["parameters"];
-    let bodies = all(&data["bodies"], |body| Free {
+    let bodies = all(&data["bodies"], |body| MassAndInertia {
         m: number(&body["m"]),
         K: NonstandardInertia::from_principal_moments(plain(&body["J"])).unwrap(),
     });
@@ -140,7 +140,7 @@ fn momenta_of_a_ring() {
         six(&omega, &v)
     });
 
-    let (tree, last) = (chained::<N>(), Joined::between(ball(RIGHT, LEFT), N - 1, 0));
+    let (tree, last) = (chained::<N>(), Connection::between(ball(RIGHT, LEFT), N - 1, 0));
     let mut ring = tree;
     ring[0] = last;
     ring.rotate_left(1);
@@ -166,9 +166,9 @@ fn momenta_of_a_ring() {
 }
 
 /// Three links of one metre with these masses between pivots at this distance, under gravity.
-fn garland(masses: [f64; 3], apart: f64) -> Held<3> {
+fn garland(masses: [f64; 3], apart: f64) -> Linkage<3> {
     let [first, second, third] = chained();
-    let joints = [first, second, third, Joined::to_space(ball(Vector3::x() * apart, RIGHT), 2)];
+    let joints = [first, second, third, Connection::to_space(ball(Vector3::x() * apart, RIGHT), 2)];
     jointed(falling(masses.map(rod), 9.81, Vector3::z()), &joints, 0.002).unwrap()
 }
 
@@ -214,7 +214,7 @@ fn a_singular_position_names_the_joint() {
     let bodies = falling([rod(1.0); 2], 9.81, Vector3::z());
     let of = |apart: f64| {
         let [first, second] = chained();
-        jointed(bodies, &[first, second, Joined::to_space(ball(Vector3::x() * apart, RIGHT), 1)], 0.01).unwrap()
+        jointed(bodies, &[first, second, Connection::to_space(ball(Vector3::x() * apart, RIGHT), 1)], 0.01).unwrap()
     };
     let stepper = of(2.0);
     let straight = [0.5, 1.5].map(|x| (SO3::identity(), R3::from(Vector3::x() * x)));
@@ -263,8 +263,8 @@ fn redundant_pins_are_named() {
     let pin = |above, below| Joint::pin([above, below], [Vector3::y(); 2]);
     let (places, corner) = row([0.9, 0.0, -0.9]);
     let of = |third, last| {
-        let pins = [Joined::to_space(pin(Vector3::zeros(), LEFT), 0), Joined::between(pin(RIGHT, LEFT), 0, 1)];
-        let joints = [pins[0], pins[1], Joined::between(third, 1, 2), Joined::to_space(last, 2)];
+        let pins = [Connection::to_space(pin(Vector3::zeros(), LEFT), 0), Connection::between(pin(RIGHT, LEFT), 0, 1)];
+        let joints = [pins[0], pins[1], Connection::between(third, 1, 2), Connection::to_space(last, 2)];
         jointed(falling([rod(1.0); 3], 9.81, Vector3::z()), &joints, 0.005).unwrap()
     };
     let still = [Vector6::zeros(); 3];
@@ -295,8 +295,8 @@ fn two_loops() {
     let fourth = SO3::exp(Vector3::z() * 1.1);
     let along = fourth.as_matrix() * Vector3::x();
     let [first, second, third] = chained();
-    let last = Joined::to_space(ball(corner, RIGHT), 2);
-    let others = [Joined::between(knot, 1, 3), Joined::to_space(ball(start + along, RIGHT), 3)];
+    let last = Connection::to_space(ball(corner, RIGHT), 2);
+    let others = [Connection::between(knot, 1, 3), Connection::to_space(ball(start + along, RIGHT), 3)];
     let all = [first, second, third, last, others[0], others[1]];
     let places = [places[0], places[1], places[2], (fourth, R3::from(start + along * 0.5))];
     let mut random = Random::new(12);

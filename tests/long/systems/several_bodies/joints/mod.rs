@@ -31,24 +31,24 @@ const EPSILON: f64 = f64::EPSILON;
 
 /// The mass and the inertia of a body.
 #[derive(Clone, Copy, Debug)]
-struct Free {
+struct MassAndInertia {
     m: f64,
     K: NonstandardInertia,
 }
 
-fn falling<const N: usize>(bodies: [Free; N], g: f64, up: Vector3<f64>) -> [FallingBody; N] {
-    bodies.map(|Free { m, K }| FallingBody { m, J_d: K, g, up })
+fn falling<const N: usize>(bodies: [MassAndInertia; N], g: f64, up: Vector3<f64>) -> [FallingBody; N] {
+    bodies.map(|MassAndInertia { m, K }| FallingBody { m, J_d: K, g, up })
 }
 
 /// A joint between two bodies, or between space and a body.
 #[derive(Clone, Copy, Debug)]
-struct Joined<C> {
+struct Connection<C> {
     joint: C,
     above: Option<usize>,
     below: usize,
 }
 
-impl<C> Joined<C> {
+impl<C> Connection<C> {
     const fn between(joint: C, above: usize, below: usize) -> Self {
         Self { joint, above: Some(above), below }
     }
@@ -59,7 +59,7 @@ impl<C> Joined<C> {
 }
 
 /// A joint that is added to a system.
-trait Joins: Copy {
+trait Joint: Copy {
     fn join(self, system: &mut Multibody, above: Option<usize>, below: usize);
 
     /// The functions, and zeros after them.
@@ -68,7 +68,7 @@ trait Joins: Copy {
 
 macro_rules! joins {
     ($($joint:ty: $functions:literal),+) => {$(
-        impl Joins for $joint {
+        impl Joint for $joint {
             fn join(self, system: &mut Multibody, above: Option<usize>, below: usize) {
                 system.join(self, above, below);
             }
@@ -85,12 +85,12 @@ joins!(Joint: 6, Strut: 1);
 
 /// A stepper of falling bodies in joints, and the bodies without them.
 #[derive(Clone, Debug)]
-struct Held<const N: usize> {
+struct Linkage<const N: usize> {
     bodies: [FallingBody; N],
     stepper: MultibodyStepper,
 }
 
-impl<const N: usize> core::ops::Deref for Held<N> {
+impl<const N: usize> core::ops::Deref for Linkage<N> {
     type Target = MultibodyStepper;
 
     fn deref(&self) -> &MultibodyStepper {
@@ -98,7 +98,7 @@ impl<const N: usize> core::ops::Deref for Held<N> {
     }
 }
 
-impl<const N: usize> Held<N> {
+impl<const N: usize> Linkage<N> {
     fn scene(&self) -> Scene<N> {
         Each::<N>::of(self.bodies)
     }
@@ -131,31 +131,31 @@ impl<const N: usize> Held<N> {
 }
 
 /// The system of these bodies and joints.
-fn system<C: Joins, const N: usize>(bodies: [FallingBody; N], joints: &[Joined<C>]) -> Multibody {
+fn system<C: Joint, const N: usize>(bodies: [FallingBody; N], joints: &[Connection<C>]) -> Multibody {
     let mut system = Multibody::new();
     for body in bodies {
         system.body(body);
     }
-    for &Joined { joint, above, below } in joints {
+    for &Connection { joint, above, below } in joints {
         joint.join(&mut system, above, below);
     }
     system
 }
 
-fn jointed<C: Joins, const N: usize>(
+fn jointed<C: Joint, const N: usize>(
     bodies: [FallingBody; N],
-    joints: &[Joined<C>],
+    joints: &[Connection<C>],
     h: f64,
-) -> Result<Held<N>, SetupError> {
-    system(bodies, joints).stepper(h).map(|stepper| Held { bodies, stepper })
+) -> Result<Linkage<N>, SetupError> {
+    system(bodies, joints).stepper(h).map(|stepper| Linkage { bodies, stepper })
 }
 
 /// The ends of a rod of one metre, from its centre.
 const LEFT: Vector3<f64> = Vector3::new(-0.5, 0.0, 0.0);
 const RIGHT: Vector3<f64> = Vector3::new(0.5, 0.0, 0.0);
 
-fn rod(m: f64) -> Free {
-    Free { m, K: NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1) * m).unwrap() }
+fn rod(m: f64) -> MassAndInertia {
+    MassAndInertia { m, K: NonstandardInertia::from_principal_moments(Vector3::new(0.02, 0.1, 0.1) * m).unwrap() }
 }
 
 fn ball(above: Vector3<f64>, below: Vector3<f64>) -> Joint {
@@ -163,10 +163,10 @@ fn ball(above: Vector3<f64>, below: Vector3<f64>) -> Joint {
 }
 
 /// Rods one after the other, the first from the origin.
-fn chained<const N: usize>() -> [Joined<Joint>; N] {
+fn chained<const N: usize>() -> [Connection<Joint>; N] {
     from_fn(|k| match k {
-        0 => Joined::to_space(ball(Vector3::zeros(), LEFT), 0),
-        _ => Joined::between(ball(RIGHT, LEFT), k - 1, k),
+        0 => Connection::to_space(ball(Vector3::zeros(), LEFT), 0),
+        _ => Connection::between(ball(RIGHT, LEFT), k - 1, k),
     })
 }
 
@@ -210,9 +210,9 @@ fn moved(body: &Body, k: usize, s: f64) -> Body {
 
 /// The part of an impulse on bodies in this configuration that isn't in the span of the joints' slopes, by differences
 /// of the constraints: it does work on motions that leave the joints closed.
-fn working<C: Joins, const N: usize>(joints: &[Joined<C>], bodies: &[Body; N], impulse: &Components<N>) -> f64 {
+fn working<C: Joint, const N: usize>(joints: &[Connection<C>], bodies: &[Body; N], impulse: &Components<N>) -> f64 {
     const K: usize = 6;
-    let gap = |joined: &Joined<C>, bodies: &[Body; N]| {
+    let gap = |joined: &Connection<C>, bodies: &[Body; N]| {
         let above = joined.above.map_or(Place::SPACE, |above| place(&bodies[above]));
         joined.joint.gaps(&above, &place(&bodies[joined.below]))
     };
@@ -233,9 +233,9 @@ fn working<C: Joins, const N: usize>(joints: &[Joined<C>], bodies: &[Body; N], i
 
 /// Checks D'Alembert's principle: the joints' impulses before and after a step do no work on motions that leave the
 /// joints closed. Half of the step's force is applied at either end.
-fn assert_no_work<S, C: Joins, const N: usize>(
+fn assert_no_work<S, C: Joint, const N: usize>(
     (l, h): (&S, f64),
-    joints: &[Joined<C>],
+    joints: &[Connection<C>],
     given: &Components<N>,
     [(start, before), (end, after)]: [([Body; N], Components<N>); 2],
 ) where

@@ -29,7 +29,7 @@ use super::{assert_same, started};
         + 0.5 * h * kappa * (R.trace() + (R * F_1).trace()),
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct AlikeInSpace<T> {
+struct AlignedBodies<T> {
     J_1: NonstandardInertia<T>,
     J_2: NonstandardInertia<T>,
     kappa: T,
@@ -78,13 +78,13 @@ fn together<M: Batchable<AutoF64x4>>(bodies: &[(M, M::State)]) -> (M::Together, 
 }
 
 /// The stepper with compensated sums.
-fn compensated<L: Regular<Scalar = f64>>((stepper, state): (Stepper<L>, StateOf<L>)) -> Carrying<L> {
+fn compensated<L: Regular<Scalar = f64>>((stepper, state): (Stepper<L>, StateOf<L>)) -> CompensatedRun<L> {
     let stepper = stepper.compensated();
     let state = stepper.adopt(&state);
     (stepper, state)
 }
 
-type Carrying<L> = (Stepper<L, CompensatedSums<OwnStep<L>>>, StateOf<L, CompensatedSums<OwnStep<L>>>);
+type CompensatedRun<L> = (Stepper<L, CompensatedSums<OwnStep<L>>>, StateOf<L, CompensatedSums<OwnStep<L>>>);
 
 type InLanesOf<M> = <<M as InLanes<AutoF64x4>>::Together as Integrator>::State;
 
@@ -158,7 +158,7 @@ fn each_lane_of_a_double_pendulum_is_one() {
 #[test]
 fn each_lane_of_bodies_that_are_solved_apart_is_one() {
     let random = &mut Random::new(32);
-    let mut scene = || AlikeInSpace { J_1: inertia::<f64>(random), J_2: inertia(random), kappa: 2.0 };
+    let mut scene = || AlignedBodies { J_1: inertia::<f64>(random), J_2: inertia(random), kappa: 2.0 };
     let scenes = [scene(), scene(), scene(), scene()];
     let starts = [0, 1, 2, 3].map(|_| start(random, 2.0));
     let composed = |k: usize| {
@@ -228,7 +228,7 @@ fn each_lane_of_two_bodies_that_attract_each_other_is_one() {
 /// A rigid body on SE(3), whose matrix is inverted lane by lane.
 #[lagrangian(group = SE3, l_d = ((F - I) * K * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Floating<T> {
+struct SE3Body<T> {
     K: nalgebra::Matrix4<T>,
 }
 
@@ -238,7 +238,7 @@ fn each_lane_of_a_group_that_is_inverted_is_one() {
     let moved = |way: &Vector6<f64>| -> SE3 { ExponentialRetraction::retract(way) };
     let floating = |mass: f64| {
         let K = nalgebra::Matrix4::from_diagonal(&nalgebra::Vector4::new(0.3, 0.4, 0.5, mass));
-        Stepper::new(Floating { K }, 0.01).unwrap()
+        Stepper::new(SE3Body { K }, 0.01).unwrap()
     };
     let mut bodies = [0, 1, 2, 3].map(|_| {
         let stepper = floating(2.0 + vector(random).x);
@@ -261,20 +261,20 @@ fn each_lane_of_a_group_that_is_inverted_is_one() {
     assert!((largest * 1.001 / 0.01 - 1.0).abs() < 1e-5, "{largest}");
     // A body without mass has a singular Jacobian everywhere, and is refused at construction.
     let K = nalgebra::Matrix4::from_diagonal(&nalgebra::Vector4::new(0.3, 0.4, 0.5, 0.0));
-    assert!(matches!(Stepper::new(Floating { K }, 0.01), Err(SetupError::SingularKinetic { body: None, .. })));
+    assert!(matches!(Stepper::new(SE3Body { K }, 0.01), Err(SetupError::SingularKinetic { body: None, .. })));
 }
 
 /// A rotating body whose step has no solution about its third axis beyond a right angle.
 #[lagrangian(group = SO3, l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h))]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Turning<T> {
+struct TurningBody<T> {
     J_d: NonstandardInertia<T>,
 }
 
 /// The weight of a body.
 #[lagrangian(group = SO3, advected(w = up), l_d = -0.5 * h * weight * w.dot(&(rho + F * rho)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Heavy<T> {
+struct Weight<T> {
     weight: T,
     rho: Vector3<T>,
     up: Vector3<T>,
@@ -286,11 +286,11 @@ fn each_lane_of_a_row_of_bodies_is_one() {
     const N: usize = 4;
     let random = &mut Random::new(36);
     let bodies = [0, 1, 2, 3].map(|_| {
-        let turning = Each::<N>::of([0, 1, 2, 3].map(|_| Turning { J_d: inertia::<f64>(random) }));
+        let turning = Each::<N>::of([0, 1, 2, 3].map(|_| TurningBody { J_d: inertia::<f64>(random) }));
         let tied = [0, 1, 2].map(|_| Alike { kappa: 2.0 + vector(random).x });
-        let weight = Heavy { weight: 2.0 + vector(random).x, rho: vector(random) * 0.3, up: Vector3::z() };
+        let weight = Weight { weight: 2.0 + vector(random).x, rho: vector(random) * 0.3, up: Vector3::z() };
         // The first body has a second inertia.
-        let scene = On::<0, N>::of([Turning { J_d: inertia::<f64>(random) }])
+        let scene = On::<0, N>::of([TurningBody { J_d: inertia::<f64>(random) }])
             + turning
             + Along::<N>::of(tied)
             + Between::<3, 0, N>::of([tied[0]])

@@ -12,14 +12,14 @@ use liestep::{SO3, StepError, Stepper};
 use nalgebra::Vector3;
 use simba::simd::AutoF64x4;
 
-use super::{Turning, assert_each_is_alone, compensated, inertia, links, start, together, vector};
+use super::{TurningBody, assert_each_is_alone, compensated, inertia, links, start, together, vector};
 use crate::several_bodies::{assert_same, started};
 
-type Row = Sum<Placement<Each<4>, Turning<f64>, 4>, Placement<Along<4>, Alike<f64>, 1>>;
+type Row = Sum<Placement<Each<4>, TurningBody<f64>, 4>, Placement<Along<4>, Alike<f64>, 1>>;
 
 /// Four bodies with alignment potentials.
 fn row(random: &mut Random) -> Row {
-    Each::<4>::of([0, 1, 2, 3].map(|_| Turning { J_d: inertia::<f64>(random) }))
+    Each::<4>::of([0, 1, 2, 3].map(|_| TurningBody { J_d: inertia::<f64>(random) }))
         + Along::<4>::of([Alike { kappa: 2.0 + vector(random).x }])
 }
 
