@@ -147,6 +147,7 @@ pub(super) fn declared(factors: &[Generators], carried: Vec<Carried>) -> StagedD
         energy: None,
         derivation: String::new(),
         has_kinetic: true,
+        has_force: false,
         parts: [true, false, false],
         denominators: 0,
         has_constant_inertia: true,

@@ -59,7 +59,7 @@ impl<C> Connection<C> {
 }
 
 /// A joint that is added to a system.
-trait Joint: Copy {
+trait JointOfTests: Copy {
     fn join(self, system: &mut Multibody, above: Option<usize>, below: usize);
 
     /// The functions, and zeros after them.
@@ -68,7 +68,7 @@ trait Joint: Copy {
 
 macro_rules! joins {
     ($($joint:ty: $functions:literal),+) => {$(
-        impl Joint for $joint {
+        impl JointOfTests for $joint {
             fn join(self, system: &mut Multibody, above: Option<usize>, below: usize) {
                 system.join(self, above, below);
             }
@@ -131,7 +131,7 @@ impl<const N: usize> Linkage<N> {
 }
 
 /// The system of these bodies and joints.
-fn system<C: Joint, const N: usize>(bodies: [FallingBody; N], joints: &[Connection<C>]) -> Multibody {
+fn system<C: JointOfTests, const N: usize>(bodies: [FallingBody; N], joints: &[Connection<C>]) -> Multibody {
     let mut system = Multibody::new();
     for body in bodies {
         system.body(body);
@@ -142,7 +142,7 @@ fn system<C: Joint, const N: usize>(bodies: [FallingBody; N], joints: &[Connecti
     system
 }
 
-fn jointed<C: Joint, const N: usize>(
+fn jointed<C: JointOfTests, const N: usize>(
     bodies: [FallingBody; N],
     joints: &[Connection<C>],
     h: f64,
@@ -210,7 +210,11 @@ fn moved(body: &Body, k: usize, s: f64) -> Body {
 
 /// The part of an impulse on bodies in this configuration that isn't in the span of the joints' slopes, by differences
 /// of the constraints: it does work on motions that leave the joints closed.
-fn working<C: Joint, const N: usize>(joints: &[Connection<C>], bodies: &[Body; N], impulse: &Components<N>) -> f64 {
+fn working<C: JointOfTests, const N: usize>(
+    joints: &[Connection<C>],
+    bodies: &[Body; N],
+    impulse: &Components<N>,
+) -> f64 {
     const K: usize = 6;
     let gap = |joined: &Connection<C>, bodies: &[Body; N]| {
         let above = joined.above.map_or(Place::SPACE, |above| place(&bodies[above]));
@@ -233,7 +237,7 @@ fn working<C: Joint, const N: usize>(joints: &[Connection<C>], bodies: &[Body; N
 
 /// Checks D'Alembert's principle: the joints' impulses before and after a step do no work on motions that leave the
 /// joints closed. Half of the step's force is applied at either end.
-fn assert_no_work<S, C: Joint, const N: usize>(
+fn assert_no_work<S, C: JointOfTests, const N: usize>(
     (l, h): (&S, f64),
     joints: &[Connection<C>],
     given: &Components<N>,
