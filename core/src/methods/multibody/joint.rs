@@ -30,7 +30,7 @@ use crate::error::SetupError;
 /// A cart on a rail, with a pole on a pin. The momentum along the rail is conserved.
 ///
 /// ```
-/// use liestep::groups::R3;
+/// use liestep::groups::{LieGroup as _, R3};
 /// use liestep::methods::{Joint, Multibody};
 /// use liestep::{NonstandardInertia, SO3, lagrangian};
 /// use nalgebra::{Matrix3, Vector3, Vector6};
