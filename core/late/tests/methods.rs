@@ -174,7 +174,9 @@ fn free(n: usize, generators: &[Vec<f64>]) -> &'static Declaration {
 
 fn generator(n: usize, entries: &[(usize, usize, f64)]) -> Vec<f64> {
     let mut matrix = vec![0.0; n * n];
-    entries.iter().for_each(|&(i, j, entry)| matrix[i * n + j] = entry);
+    for &(i, j, entry) in entries {
+        matrix[i * n + j] = entry;
+    }
     matrix
 }
 

@@ -3,7 +3,7 @@
 //!
 //! | turns | shifts in a slider | |
 //! |---|---|---|
-//! | [`JointSpring`] | [`SliderSpring`] | energies `½ k θ²`, `½ k (s − l)² − f s` |
+//! | [`JointSpring`] | [`SliderSpring`] | energies `½ k θ²`, `½ k (s − l)² − f (s − l)` |
 //! | [`JointDamping`] | [`SliderDamping`] | viscous friction, `−c ω` and `−c v` |
 //! | [`DryFriction`] | | `−τ ω/√(|ω|² + v²)` |
 //! | [`JointTorque`] | | a motor's constant torque |
@@ -14,6 +14,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::groups::{R3, SO3};
 use liestep_macros::{force, lagrangian};
+
+roots!();
 
 /// A spring of turning in a joint: the energy `½ k θ²` of the angle `θ` of `R_1ᵀ R_2 Q₀ᵀ` with the attitude `Q₀` at rest, half of
 /// its impulse at either end of a step. It is for a pin, a universal joint, a ball joint and a cylinder; at half a turn from rest
@@ -86,15 +88,15 @@ pub struct JointTorque {
     pub axis_2: Vector3<f64>,
 }
 
-/// A spring and a constant force in a slider: the energy `½ k (s − l)² − f s` of the shift `s` of a point of the second body
+/// A spring and a constant force in a slider: the energy `½ k (s − l)² − f (s − l)` of the shift `s` of a point of the second body
 /// from the origin of the first, along an axis of the first; half of its impulse at either end of a step.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
     l_d = {
-        let before = (R_1 * axis).dot(&(r + R_2 * at_2));
-        let after = (R_1 * F_1 * axis).dot(&(r + d_2 - d_1 + R_2 * F_2 * at_2));
-        -0.25 * h * k * ((before - rest).powi(2) + (after - rest).powi(2)) + 0.5 * h * force * (before + after)
+        let before = (R_1 * axis).dot(&(r + R_2 * at_2)) - rest;
+        let after = (R_1 * F_1 * axis).dot(&(r + d_2 - d_1 + R_2 * F_2 * at_2)) - rest;
+        -0.25 * h * k * (before * before + after * after) + 0.5 * h * force * (before + after)
     },
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -274,7 +274,7 @@ struct TurningBody<T> {
 /// The weight of a body.
 #[lagrangian(group = SO3, advected(w = up), l_d = -0.5 * h * weight * w.dot(&(rho + F * rho)))]
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Weight<T> {
+struct HeavyTerm<T> {
     weight: T,
     rho: Vector3<T>,
     up: Vector3<T>,
@@ -288,7 +288,7 @@ fn each_lane_of_a_row_of_bodies_is_one() {
     let bodies = [0, 1, 2, 3].map(|_| {
         let turning = Each::<N>::of([0, 1, 2, 3].map(|_| TurningBody { J_d: inertia::<f64>(random) }));
         let tied = [0, 1, 2].map(|_| Alike { kappa: 2.0 + vector(random).x });
-        let weight = Weight { weight: 2.0 + vector(random).x, rho: vector(random) * 0.3, up: Vector3::z() };
+        let weight = HeavyTerm { weight: 2.0 + vector(random).x, rho: vector(random) * 0.3, up: Vector3::z() };
         // The first body has a second inertia.
         let scene = On::<0, N>::of([TurningBody { J_d: inertia::<f64>(random) }])
             + turning
