@@ -60,11 +60,20 @@ def test_courses(top, course):
 
 @pytest.mark.parametrize("method", [
     {"composition": "none"}, {"collocation": 3}, {"splitting": "Strang", "composition": "Suzuki 4"}, {"substeps": 0},
-    {"substeps": 2, "composition": "Suzuki 4"}, {"collocation": 4, "substeps": 2},
+    {"collocation": 4, "substeps": 2},
 ])
 def test_methods(top, method):
     with pytest.raises(ls.Error):
         top.stepper(0.01, **method)
+
+
+def test_a_step_of_a_composition_is_divided_where_it_has_no_solution(top):
+    course = {"velocity": [0.5, 2, 12], "until": 1.5}
+    with pytest.raises(ls.StepError, match="no solution"):
+        top.stepper(0.15, composition="Suzuki 4").run(**course)
+    divided = top.stepper(0.15, composition="Suzuki 4", substeps=2).run(**course)
+    halves = top.stepper(0.075, composition="Suzuki 4").run(**course)
+    assert abs(divided.momentum[-1] - halves.momentum[-1]).max() < 1e-12
 
 
 @pytest.mark.parametrize("step", [0.0, nan, inf])
