@@ -223,7 +223,7 @@ class Sum:
         Raises
         ------
         DeclarationError
-            The sum has no kinetic energy, or a function that C doesn't have, as the logarithm of an increment.
+            The sum has no kinetic energy.
 
         Examples
         --------
