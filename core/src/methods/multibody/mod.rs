@@ -29,6 +29,7 @@ mod joint;
 mod newton;
 mod nodes;
 mod part;
+mod point_mass;
 mod propagator;
 mod redundancy;
 mod start;

@@ -50,7 +50,7 @@ impl MultibodyStepper {
         if !is_finite(momenta) {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
-        self.check_inertias(|body| attitudes[body])?;
+        self.check_inertias(attitudes)?;
         self.check_coupled_inertia(attitudes)?;
         let mut state = self.offsets.zeros();
         self.offsets.write(&mut state, attitudes, momenta);

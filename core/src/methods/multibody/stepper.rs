@@ -12,6 +12,7 @@ use super::constraint::Place;
 use super::couplings::{Coupling, couplings};
 use super::equations::{gap, gap_of_all};
 use super::graph::{Joint, Tree};
+use super::point_mass::is_point_mass;
 use super::state::{Offsets, body_at, layout};
 use super::system::{Multibody, ends};
 use super::terms::{BodyTerm, space};
@@ -56,6 +57,8 @@ pub struct MultibodyStepper {
     pub(super) free: Tree,
     /// The radius of gyration of each body, m, by which rotations are compared with translations.
     pub(super) lengths: Vec<f64>,
+    /// Whether a body has no velocity without its joints.
+    pub(super) has_point_masses: bool,
     pub(super) layout: Layout,
     pub(super) offsets: Offsets,
 }
@@ -87,7 +90,7 @@ impl Multibody {
             })?;
         }
         self.pairs.iter().try_for_each(|(_, term)| term.validate())?;
-        MultibodyStepper::of(self, h)
+        MultibodyStepper::of(self.with_point_masses(), h)
     }
 }
 
@@ -110,10 +113,13 @@ impl MultibodyStepper {
         let place = |body: usize| system.terms.partition_point(|(of, _)| *of < body);
         let ranges = (0..system.bodies).map(|body| place(body)..place(body + 1)).collect();
         let (layout, offsets) = (layout(system.bodies), Offsets::of(system.bodies));
+        let (lengths, has_point_masses) = (Vec::new(), false);
         let mut stepper =
-            Self { h, system, ranges, tree, reduced, couplings, free, lengths: Vec::new(), layout, offsets };
-        stepper.check_inertias(|_| space())?;
-        stepper.lengths = (0..stepper.bodies()).map(|body| length(&stepper.at_rest(body, &space()).2)).collect();
+            Self { h, system, ranges, tree, reduced, couplings, free, lengths, has_point_masses, layout, offsets };
+        let at_origin = alloc::vec![space(); stepper.bodies()];
+        stepper.check_inertias(&at_origin)?;
+        stepper.has_point_masses = (0..stepper.bodies()).any(|body| is_point_mass(&stepper.at_rest(body, &space()).2));
+        stepper.lengths = stepper.limit(&at_origin).matrices.iter().map(length).collect();
         // Some constants aren't finite for any step.
         if h != 0.0 && !stepper.system.refolded(h).is_finite() && !stepper.system.is_finite() {
             return Err(SetupError::NonFiniteConstant);
