@@ -103,11 +103,14 @@ fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Out
     let picture = system.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
     output.write(&name(path, "svg"), &picture)?;
     tables_have_grown(given, path, output)?;
-    notes(&run);
-    if given.get_flag("html") {
-        let path = visible(&path.display().to_string());
-        eprintln!("note: a page plays one body, and {path} has several: there is none of it");
+    if given.get_flag("csv") && system.events().next().is_some() {
+        let table = system.event_table(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
+        output.write(&name(path, "events.csv"), &table)?;
     }
+    if given.get_flag("html") {
+        output.write(&name(path, "html"), &system.page(&run))?;
+    }
+    notes(&run);
     print(&(system.summary(&run) + &system.end_error(&run)))
 }
 

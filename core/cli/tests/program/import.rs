@@ -102,8 +102,12 @@ fn a_double_pendulum() {
         joint("flange", "fixed", ["far", "tool"], "<origin xyz=\"0 0 0.5\"/>"),
     ]);
     let Import { text: scene, remarks } = imported("double-pendulum", &text, false);
-    assert_eq!(remarks, ["joint shoulder: its limits aren't imposed"]);
-    assert!(scene.starts_with("# joint shoulder: its limits aren't imposed\ntitle = \"arm\"\n"), "{scene}");
+    assert_eq!(remarks, ["joint shoulder: its limits are watched, not imposed"]);
+    assert!(scene.starts_with("# joint shoulder: its limits are watched, not imposed\ntitle = \"arm\"\n"), "{scene}");
+    assert!(
+        scene.contains("name = \"shoulder\"\n") && scene.contains("limits = { from = -1.0, to = 1.0 }\n"),
+        "{scene}"
+    );
     // The first angle is 0.7 rad about y, the second 0.5 rad more.
     let [first, second] = [0.7, 1.2];
     let moved = scene.replacen("angle = 0\n", "angle = 0.7\n", 1).replacen("angle = 0\n", "angle = 0.5\n", 1);
@@ -191,7 +195,7 @@ fn whatever_has_no_counterpart_is_listed() {
         "link thin: `visual` is a shape, and shapes aren't read",
         "link thin: `collision` is a shape, and shapes aren't read",
         "joint first: `safety_controller`: no counterpart",
-        "joint first: its limits aren't imposed",
+        "joint first: its limits leave it no way, left out",
         "joint second: it moves by itself, and doesn't follow first",
         "link camera and joint lens: without a mass at the end of an arm, left out",
         "link thin: no body has its inertia, as a principal moment is at most the sum of the others; the least one is raised",

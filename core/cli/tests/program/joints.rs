@@ -166,6 +166,138 @@ fn each_kind_holds() {
     assert!((end(&run(rod), 0).norm() - 0.5).abs() < 1e-14);
 }
 
+fn free_pin(keys: &str, rest: &str) -> String {
+    format!(
+        "title = \"a\"\n[[body]]\nname = \"a\"\nm = 2\nmoments = [0.3, 0.4, 0.5]\n[[joint]]\nkind = \"pin\"\n\
+         bodies = [\"space\", \"a\"]\nat = [[0, 0, 0], [-0.2, 0, 0]]\naxes = [[0, 0, 1], [0, 0, 1]]\n{keys}\n{rest}\n\
+         [run]\nstep = 0.01\nduration = 4\n"
+    )
+}
+
+/// Limits are events where the joint passes them outwards, at the times of a uniform motion, and stop the run if they are to;
+/// columns pass values as on any group.
+#[test]
+fn limits_and_columns_are_events() {
+    let limits = |stop: &str| format!("name = \"elbow\"\nrate = 2\nlimits = {{ from = \"-0.5 rad\", to = 1{stop} }}");
+    let happened =
+        |run: &Run| -> Vec<_> { run.happenings().iter().map(|one| (one.event, one.rising, one.sample.time)).collect() };
+    let is_at = |found: &[(usize, bool, f64)], expected: &[(usize, bool, f64)]| {
+        let near = |(one, other): (&(usize, bool, f64), &(usize, bool, f64))| {
+            // The steps of 0.02 rad turn the body too far by 1e-5.
+            (one.0, one.1) == (other.0, other.1) && (one.2 / other.2 - 1.0).abs() < 2e-5
+        };
+        found.len() == expected.len() && found.iter().zip(expected).all(near)
+    };
+    let half_turn = std::f64::consts::FRAC_PI_2;
+    let event = "[[event]]\nname = \"across\"\ncolumn = \"a_x\"\nvalue = 0\n[[event]]\nname = \"elbow-right\"\n\
+                 column = \"elbow_angle\"\nvalue = \"90 deg\"\ndirection = \"rising\"";
+    let passing = run(&free_pin(&limits(""), event));
+    let found = happened(&passing);
+    // The angle is 2 t: a_x passes zero at odd quarters of a turn, the limit is passed at 1 and at 1 and a turn.
+    let expected = [
+        (2, true, 0.5),
+        (0, false, half_turn * 0.5),
+        (1, true, half_turn * 0.5),
+        (0, true, half_turn * 1.5),
+        (2, true, 0.5 + 2.0 * half_turn),
+        (0, false, half_turn * 2.5),
+        (1, true, half_turn * 2.5),
+    ];
+    let sorted = |mut all: Vec<(usize, bool, f64)>| {
+        all.sort_by(|one, other| one.2.total_cmp(&other.2).then(one.0.cmp(&other.0)));
+        all
+    };
+    assert!(is_at(&sorted(found.clone()), &sorted(expected.into())), "{found:?}");
+    let scene = system(&free_pin(&limits(", stop = true"), event));
+    let stopped = scene.run().unwrap();
+    assert!((stopped.samples().last().unwrap().time - 0.5).abs() < 1e-5);
+    let summary = scene.summary(&stopped);
+    assert!(
+        summary.contains("elbow: once, first at t = 0.49999") && summary.contains(", which ended the run"),
+        "{summary}"
+    );
+    assert!(scene.event_table(&stopped).unwrap().starts_with("event,rising,t,a_x,a_y,a_z,a_q_w"));
+    assert_eq!(scene.events().collect::<Vec<_>>(), ["across", "elbow-right", "elbow"]);
+    // From the other end the angle has the other sign, and so have its limits.
+    let turned = "kind = \"pin\"\nbodies = [\"a\", \"space\"]\nat = [[-0.2, 0, 0], [0, 0, 0]]";
+    let straight = "kind = \"pin\"\nbodies = [\"space\", \"a\"]\nat = [[0, 0, 0], [-0.2, 0, 0]]";
+    let text = free_pin("rate = -2\nlimits = { from = -1, to = 0.5 }", "").replacen(straight, turned, 1);
+    assert!((run(&text).happenings()[0].sample.time - 0.5).abs() < 1e-5);
+    let slider = free_pin("speed = -0.5\nlimits = { from = \"-30 cm\", to = 1, stop = true }", "");
+    let slid = run(&slider.replacen("\"pin\"", "\"slider\"", 1));
+    assert!((slid.samples().last().unwrap().time - 0.6).abs() < 1e-9);
+}
+
+/// Forces and torques of joints as columns: those of a weight on a weld, and of a turn about a pin.
+#[test]
+fn forces_of_joints_are_columns() {
+    let output = "[output]\ncolumns = [\"force\", \"torque\", \"energy-error\", \"angle\"]";
+    let heavy = free_pin("", output).replacen("title", "gravity = { g = 9.81, up = [0, 0, 1] }\ntitle", 1);
+    let welded = heavy.replacen("\"pin\"", "\"weld\"", 1).replacen("axes = [[0, 0, 1], [0, 0, 1]]\n", "", 1);
+    let row = |text: &str, at: usize| {
+        let scene = system(text);
+        let mut csv = liestep::recording::Csv::new(Vec::new());
+        scene.run_with(&mut |_| (), Some(&mut csv)).unwrap();
+        let text = String::from_utf8(csv.into_inner().unwrap()).unwrap();
+        let line = text.lines().nth(at).unwrap();
+        line.split(',').map(|cell| cell.parse::<f64>().unwrap()).collect::<Vec<_>>()
+    };
+    let is_near = |found: &[f64], expected: &[f64], most: f64| {
+        found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < most)
+    };
+    // The weld lifts 2 kg at 0.2 m: its torque turns the body up, against the weight.
+    let found = row(&welded, 100);
+    assert!(is_near(&found[1..7], &[0.0, 0.0, 19.62, 0.0, -0.2 * 19.62, 0.0], 1e-11), "{found:?}");
+    assert_eq!(found.len(), 8);
+    // A turn with 3 rad/s pulls the body to the pin by 2·9·0.2 N, in the mean over a step from the angle zero.
+    let found = row(&free_pin("rate = 3", output), 1);
+    assert!(is_near(&found[1..7], &[-3.6, -0.054, 0.0, 0.0, 0.0, 0.0], 1e-3), "{found:?}");
+    let found = row(&free_pin("rate = 3", output), 51);
+    assert!((found[8] - 1.5).abs() < 5e-5 && found[7].abs() < 1e-13, "{found:?}");
+}
+
+/// Shapes have the moments of their formulas, and a point mass on a pin falls as a pendulum.
+#[test]
+fn bodies_by_their_shapes() {
+    let of = |keys: &str| {
+        let text = free_pin("rate = 1", "").replacen("m = 2\nmoments = [0.3, 0.4, 0.5]", keys, 1);
+        let run = run(&text);
+        let sample = &run.samples()[0];
+        // With 1 rad/s about a pin the energy is half of the moment about it, J + 0.04 m.
+        (2.0 * sample.energy, sample.momentum.y / 0.2)
+    };
+    let is = |(found, mass): (f64, f64), m: f64, J: f64| {
+        assert!(
+            (mass - m).abs() < 1e-13 * m && (found - (J + 0.04 * m)).abs() < 1e-13 * m,
+            "{found}, {mass}: {J}, {m}"
+        );
+    };
+    is(of("m = 3\nbox = [0.2, \"30 cm\", 0.7]"), 3.0, 3.0 * (0.04 + 0.09) / 12.0);
+    is(of("density = \"2 g/cm³\"\nbox = [0.1, 0.2, 0.3]"), 12.0, 12.0 * (0.01 + 0.04) / 12.0);
+    is(of("m = 3\nsphere = { radius = 0.5 }"), 3.0, 0.4 * 3.0 * 0.25);
+    is(of("m = 3\ncylinder = { radius = 0.5, length = 2 }"), 3.0, 0.5 * 3.0 * 0.25);
+    is(of("m = 3\ncylinder = { radius = 0.5, length = 2, axis = [1, 0, 0] }"), 3.0, 3.0 * (0.0625 + 4.0 / 12.0));
+    let (r, l) = (0.1, 0.6);
+    let [cylinder, ball] =
+        [1000.0 * std::f64::consts::PI * r * r * l, 1000.0 * 4.0 / 3.0 * std::f64::consts::PI * r * r * r];
+    is(
+        of("density = 1000\ncapsule = { radius = 0.1, length = 0.6 }"),
+        cylinder + ball,
+        (0.5 * cylinder + 0.4 * ball) * r * r,
+    );
+    is(of("m = 3\nmoments = [1, 1, 1]\nsphere = { radius = 0.5 }"), 3.0, 1.0);
+    is(of("m = 3\nmoments = [0, 0, 0]"), 3.0, 0.0);
+    // The place of an equation of one angle, by a solver of order eight.
+    let point = "title = \"a\"\ngravity = { g = 9.81, up = [0, 0, 1] }\n[[body]]\nname = \"a\"\nm = 1\nmoments = [0, 0, 0]\n\
+                 [[joint]]\nkind = \"pin\"\nbodies = [\"space\", \"a\"]\nat = [[0, 0, 0], [0, 0, 0.5]]\naxes = [[0, 1, 0], [0, 1, 0]]\n\
+                 rate = -1\n[run]\nstep = 0.0005\nduration = 1\n";
+    let place = end(&run(point), 0);
+    assert!((place - Vector3::new(-0.107_334, 0.0, -0.488_344)).amax() < 1e-6, "{place}");
+    let on_a_ball = point.replace("\"pin\"", "\"ball\"").replace("axes = [[0, 1, 0], [0, 1, 0]]\nrate = -1\n", "");
+    let refused = system(&on_a_ball).run().unwrap_err().to_string();
+    assert!(refused.contains("singular"), "{refused}");
+}
+
 /// Each mistake has one message at its place.
 #[test]
 fn mistakes() {
@@ -228,6 +360,30 @@ fn mistakes() {
         (
             change("rate = 2", "rate = 2\n[[body]]\nname = \"lost\"\nm = 1\nmoments = [1, 1, 1]"),
             "22:8: `lost` has no place: give its `position` and `start`, or a joint with a body that has one, or with `space`",
+        ),
+        (
+            kind("pin", "axes = [[0, 1, 0], [0, 1, 0]]\nlimits = { from = 1, to = -1 }"),
+            "20:10: a joint moves `from` one place `to` a greater one",
+        ),
+        (
+            kind("pin", "axes = [[0, 1, 0], [0, 1, 0]]\nlimits = { from = -4, to = 4 }"),
+            "20:10: these limits are a turn apart or more, so that none is reached: leave them out",
+        ),
+        (
+            kind("ball", "limits = { from = -1, to = 1 }"),
+            "19:10: a ball joint has no `limits`: those of a pin and a slider are watched",
+        ),
+        (
+            change("m = 1", "m = 1\ndensity = 1"),
+            "3:1: a body has a mass `m`, or a `density` with one of `box`, `cylinder`, `capsule`, `sphere`",
+        ),
+        (
+            change("m = 1", "m = 1\nsphere = { radius = 1 }\nbox = [1, 1, 1]"),
+            "3:1: a body has one of `box`, `cylinder`, `capsule`, `sphere`",
+        ),
+        (
+            change("[run]", "[[event]]\nname = \"a\"\ntilt = 0\n[run]"),
+            "38:1: only a single body has this quantity: of several an event has a `column` with a `value`, or an `energy`",
         ),
         (
             change("axes = [[0, 1, 0], [0, 1, 0]]\n[run]", "axes = [[0, 1, 0], [0, 1, 0]]\nangle = 0\n[run]"),

@@ -27,6 +27,7 @@ pub(crate) struct Joint {
     /// The distance between the points of a rod, m.
     pub(crate) length: f64,
     pub(crate) terms: Terms,
+    pub(crate) limits: Option<Limits>,
     /// The start by the coordinates of the joint, of bodies without places of their own.
     pub(crate) start: Coordinates,
 }
@@ -51,6 +52,14 @@ impl Terms {
     pub(crate) fn has_spring(&self) -> bool {
         self.stiffness.is_some() || self.effort.is_some()
     }
+}
+
+/// The ends of a joint's way, which are watched: angles of a pin, rad, or shifts of a slider, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limits {
+    pub(crate) ends: [f64; 2],
+    /// Whether the run stops there.
+    pub(crate) stops: bool,
 }
 
 /// Angle, rad, and shift, m, of a joint, and their rates.
@@ -102,7 +111,7 @@ impl Kind {
         self.has_axes() && self != Self::Universal
     }
 
-    fn turns_about_axis(self) -> bool {
+    pub(crate) fn turns_about_axis(self) -> bool {
         matches!(self, Self::Pin | Self::Cylinder | Self::Plane)
     }
 
@@ -110,7 +119,7 @@ impl Kind {
         !matches!(self, Self::Slider | Self::Weld | Self::Distance)
     }
 
-    fn shifts_along_axis(self) -> bool {
+    pub(crate) fn shifts_along_axis(self) -> bool {
         matches!(self, Self::Slider | Self::Cylinder)
     }
 
@@ -137,6 +146,7 @@ pub(crate) type Names = Spanned<[Spanned<String>; 2]>;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct JointTable {
+    pub(crate) name: Option<Spanned<String>>,
     kind: Spanned<Kind>,
     pub(crate) bodies: Names,
     at: [Triple<Length>; 2],
@@ -149,6 +159,7 @@ pub(crate) struct JointTable {
     torque: Value,
     force: Value,
     friction: Option<Spanned<FrictionTable>>,
+    limits: Option<Spanned<LimitsTable>>,
     angle: Value,
     rate: Value,
     shift: Value,
@@ -165,6 +176,33 @@ struct FrictionTable {
     torque: PositiveScalar<Torque>,
     /// The rate below which friction is viscous.
     below: PositiveScalar<Rate>,
+}
+
+/// The ends of a joint's way.
+#[derive(Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LimitsTable {
+    from: Spanned<toml::Value>,
+    to: Spanned<toml::Value>,
+    #[serde(default)]
+    stop: bool,
+}
+
+impl LimitsTable {
+    fn limits<Q: Quantity>(self, span: Range<usize>, most: f64) -> Result<Limits, SpanMessage> {
+        let end = |value| Ok(read::<Q>(&Some(value))?.unwrap_or(0.0));
+        let [from, to] = [end(self.from)?, end(self.to)?];
+        if from >= to {
+            return Err((span, "a joint moves `from` one place `to` a greater one".to_owned()));
+        }
+        if to - from >= most {
+            return Err((
+                span,
+                "these limits are a turn apart or more, so that none is reached: leave them out".to_owned(),
+            ));
+        }
+        Ok(Limits { ends: [from, to], stops: self.stop })
+    }
 }
 
 /// The number of a value with the units of a quantity.
@@ -245,6 +283,9 @@ impl JointTable {
         if let (Some(friction), false) = (&self.friction, kind.turns()) {
             return refuse(friction.span(), format!("a {name} has no dry `friction`: it is for joints that turn"));
         }
+        if let (Some(limits), false) = (&self.limits, matches!(kind, Kind::Pin | Kind::Slider)) {
+            return refuse(limits.span(), format!("a {name} has no `limits`: those of a pin and a slider are watched"));
+        }
         if let (Some(rest), None) = (&self.rest, &self.stiffness) {
             return refuse(rest.span(), "a spring that is at `rest` somewhere has a `stiffness`".to_owned());
         }
@@ -308,9 +349,18 @@ impl JointTable {
             shift: read::<Length>(&self.shift)?.unwrap_or(0.0),
             speed: read::<Speed>(&self.speed)?.unwrap_or(0.0),
         };
+        let limits = self.limits.map(|limits| {
+            let (span, limits) = (limits.span(), limits.into_inner());
+            if is_slider {
+                limits.limits::<Length>(span, f64::INFINITY)
+            } else {
+                limits.limits::<Angle>(span, std::f64::consts::TAU)
+            }
+        });
+        let limits = limits.transpose()?;
         let length = self.length.map_or(0.0, |length| length.into_inner().value);
         let at = self.at.map(|point| point.value);
-        let joint = Joint { kind, at, axes, zero, length, terms, start };
+        let joint = Joint { kind, at, axes, zero, length, terms, limits, start };
         Ok(if is_swapped { joint.swapped() } else { joint })
     }
 }
@@ -318,13 +368,14 @@ impl JointTable {
 impl Joint {
     /// The joint from the other end: angles, shifts and what acts along them have the opposite sign.
     fn swapped(self) -> Self {
-        let Self { mut at, mut axes, zero, terms, start, .. } = self;
+        let Self { mut at, mut axes, zero, terms, limits, start, .. } = self;
         at.swap(0, 1);
         axes.swap(0, 1);
         let Coordinates { angle, rate, shift, speed } = start;
         let terms = Terms { rest: -terms.rest, effort: terms.effort.map(|effort| -effort), ..terms };
         let start = Coordinates { angle: -angle, rate: -rate, shift: -shift, speed: -speed };
-        Self { at, axes, zero: zero.transpose(), terms, start, ..self }
+        let limits = limits.map(|limits| Limits { ends: [-limits.ends[1], -limits.ends[0]], ..limits });
+        Self { at, axes, zero: zero.transpose(), terms, limits, start, ..self }
     }
 
     /// The constraint.

@@ -166,7 +166,7 @@ impl SceneFile {
 
     /// The columns that follow the time in a table, one for each number.
     pub(crate) fn listed(&self) -> Vec<recording::Column> {
-        Column::listed(&self.columns, &[""]).into_iter().map(|(column, _)| column).collect()
+        Column::listed(&self.columns)
     }
 
     /// The ensemble of scenes, if the file has a table `ensemble`.

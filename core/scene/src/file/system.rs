@@ -1,26 +1,25 @@
 //! The file of a system of several bodies.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use liestep::NonstandardInertia;
 use liestep::recording;
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::body::{INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
 use crate::file::column::{Column, Output};
-use crate::file::joint::{Joint, JointTable, Names};
+use crate::file::event::{Event, Quantity};
+use crate::file::joint::{Joint, JointTable, Limits, Names};
 use crate::file::mistake::{Mistake, SpanMessage, advised, place_of};
-use crate::file::part::{Between, SystemBody};
+use crate::file::part::{Between, BodyTable, SPACE, SystemBody, is_plain};
 use crate::file::picture::PlanePicture;
 use crate::file::placed::place;
 use crate::file::quantity::{
-    Acceleration, Direction, Duration, Length, Mass, PositiveScalar, Scalar, Speed, Stiffness, Triple, round, short,
+    Acceleration, Direction, Duration, Length, PositiveScalar, Scalar, Stiffness, Triple, round, short,
 };
 use crate::file::schedule::{equal_steps, fraction};
-use crate::file::start::Start;
 use crate::file::text::title;
 
 /// Several bodies, with joints and springs between them.
@@ -28,12 +27,14 @@ use crate::file::text::title;
 /// | table | keys |
 /// |---|---|
 /// | | `title` |
-/// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile); without a position a body is placed by a joint with one that has a place |
+/// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame, where three zeros are those of a point mass; or a shape with its middle in the centre of mass, from which the inertia follows, with `m` or a `density`, kg/m³: a `box` by its edges, a `cylinder` or a `capsule` by the `radius` and the `length` of the cylinder and its `axis`, by default the third, a `sphere` by its `radius`, m; a shape beside an inertia is for the page alone; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile); without a position a body is placed by a joint with one that has a place |
 /// | `gravity` | `g`, m/s²; `up`, in space |
-/// | `[[joint]]` | `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
+/// | `[[joint]]` | `name`, by default `joint-1` and so on; `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
 /// | | where the joint starts, of a body without a `position`: `angle` and `rate` about the axis, `shift`, m, and `speed`, m/s, along it, of the second body relative to the first, zero by default |
 /// | | in a joint that turns: `damping`, N m s; `stiffness`, N m/rad, with the angle at `rest`; a motor's `torque` about the axis, N m; dry `friction`: its `torque` and the rate `below` which it is viscous. In a slider: `damping`, N s/m; `stiffness`, N/m, with the shift at `rest`; a `force`, N |
+/// | | `limits` of a pin or a slider: `from` and `to`, angles or shifts, and whether the run is to `stop` where the joint passes one of them. They aren't imposed but watched: each passing is an event with the joint's name |
 /// | `[[spring]]` | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
+/// | `[[event]]` | as for [one body](crate::SceneFile), with an `energy`, or a `column` of the table and its `value`: `upper_z`, `joint-1_angle` |
 /// | `run` | `duration`; `step`, of which the duration is a whole number; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
 /// | `picture` | `plane`: `xy`, `xz`, `yz`; by default the plane in which the motion is the widest |
 /// | `output` | `columns` that follow the time in a table, see [`Column`]; `every`: the number of steps from row to row |
@@ -45,6 +46,7 @@ pub struct System {
     pub(crate) bodies: Vec<SystemBody>,
     pub(crate) gravity: Option<(f64, Vector3<f64>)>,
     pub(crate) joints: Vec<Between<Joint>>,
+    pub(crate) joint_names: Vec<String>,
     pub(crate) springs: Vec<Between<Spring>>,
     pub(crate) step: f64,
     pub(crate) steps: u32,
@@ -52,6 +54,7 @@ pub struct System {
     pub(crate) picture: PlanePicture,
     pub(crate) output: Output,
     pub(crate) columns: Vec<Column>,
+    pub(crate) event: Vec<Event>,
     pub(crate) path: PathBuf,
     pub(crate) places: SystemPlaces,
 }
@@ -84,25 +87,13 @@ struct SystemTable {
     joint: Vec<Spanned<JointTable>>,
     #[serde(default)]
     spring: Vec<Spanned<SpringTable>>,
+    #[serde(default)]
+    event: Vec<Spanned<Event>>,
     run: RunTable,
     #[serde(default)]
     picture: PlanePicture,
     #[serde(default)]
     output: Output,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BodyTable {
-    name: Spanned<String>,
-    m: PositiveScalar<Mass>,
-    moments: Option<Moments>,
-    J_d: Option<NonstandardMoments>,
-    J: Option<InertiaRows>,
-    kinetic: Option<Spanned<Kinetic>>,
-    position: Option<Triple<Length>>,
-    moving: Option<Triple<Speed>>,
-    start: Option<Start>,
 }
 
 #[derive(Deserialize)]
@@ -163,13 +154,39 @@ impl System {
     /// The columns that follow the time in a table. The gap of pins has the unit `m, 1`.
     #[must_use]
     pub fn columns(&self) -> Vec<recording::Column> {
-        let listed = Column::listed(&self.columns, &self.names().collect::<Vec<_>>());
-        let unit = |column: recording::Column| {
-            // The gap combines a length with the cosines of axes.
-            let is_mixed = column.name == "gap" && self.has_cosines();
-            if is_mixed { recording::Column { unit: "m, 1".to_owned(), ..column } } else { column }
+        Column::listed(&self.columns)
+    }
+
+    /// All columns that a table can have.
+    pub(crate) fn all_columns(&self) -> Vec<Column> {
+        let joints = self.joint_names.iter().zip(&self.joints).map(|(name, joint)| (name.as_str(), joint.of.kind));
+        Column::of_system(&self.names().collect::<Vec<_>>(), &joints.collect::<Vec<_>>())
+    }
+
+    /// The names of the events, those of joints with limits after those of the file.
+    pub fn events(&self) -> impl Iterator<Item = &str> {
+        let of_joints = self.limited().map(|(joint, _)| self.joint_names[joint].as_str());
+        self.event.iter().map(|event| event.name.as_str()).chain(of_joints)
+    }
+
+    /// The numbers of the joints with limits, and the limits.
+    pub(crate) fn limited(&self) -> impl Iterator<Item = (usize, Limits)> {
+        self.joints.iter().enumerate().filter_map(|(number, joint)| Some((number, joint.of.limits?)))
+    }
+
+    /// Whether forces and torques of joints are asked for, by a column or by an event.
+    pub(crate) fn has_reactions(&self) -> bool {
+        let is_reaction = |column: &Column| ["force", "torque"].contains(&column.key());
+        let all = self.all_columns();
+        let is_seen = |place: usize| {
+            let mut parts = all.iter().filter(|column| is_reaction(column)).filter_map(Column::part);
+            parts.any(|part| part.contains(&place))
         };
-        listed.into_iter().map(|(column, _)| unit(column)).collect()
+        let places = self.event.iter().filter_map(|event| match event.quantity {
+            Quantity::Column(place, _) => Some(place),
+            _ => None,
+        });
+        self.columns.iter().any(is_reaction) || places.into_iter().any(is_seen)
     }
 
     /// A description of the parts and the steps, in words.
@@ -181,6 +198,7 @@ impl System {
         format!("{sum}, {steps} steps of {step} s, hΩ in rad: {}", turns.join(", "))
     }
 
+    /// Whether gaps of joints are cosines in part.
     pub(crate) fn has_cosines(&self) -> bool {
         self.joints.iter().any(|joint| joint.of.kind.has_cosines())
     }
@@ -204,7 +222,8 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     let (mut bodies, mut names): (Vec<SystemBody>, Vec<Range<usize>>) = Default::default();
     let mut is_placed = Vec::new();
     for body in table.body {
-        let (body, name, has_place) = body_of(body)?;
+        let span = body.span();
+        let (body, name, has_place) = body.into_inner().body(span)?;
         if bodies.iter().any(|other| other.name == body.name) {
             return Err((name, format!("there are two bodies called `{}`", body.name)));
         }
@@ -216,11 +235,9 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         return Err((0..0, "a system has a body at least".to_owned()));
     }
     let called: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
-    let columns = table.output.columns(&Column::of_several_bodies(), &["position", "quaternion", "energy", "gap"])?;
-    if let Some((body, name)) = name_twice(&columns, &called) {
-        let message = format!("two columns of the table would be called `{name}`: give the body another name");
-        return Err((names[body].clone(), message));
-    }
+    let columns = table.output.columns(&Column::of_system(&called, &[]), &DEFAULT)?;
+    name_twice(&columns).map_or(Ok(()), |name| Err(shared(&name, &called, &names)))?;
+    let joint_names = names_of_joints(&table.joint)?;
     let joints = table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies));
     let (joints, coordinates): (Vec<_>, Vec<_>) = joints.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
     let (placing, unplaced) = place(&mut bodies, &mut is_placed, &joints);
@@ -246,76 +263,77 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     if let Some(message) = fraction(step, duration) {
         return Err((table.run.duration.span(), message));
     }
-    Ok(System {
+    let mut system = System {
         title: table.title,
         bodies,
         gravity: table.gravity.map(|field| (field.g.value, field.up.0)),
         joints,
+        joint_names,
         springs,
         step,
         steps,
         nearest: table.run.nearest,
         picture: table.picture,
         output: table.output,
-        columns,
+        columns: Vec::new(),
+        event: Vec::new(),
         path: path.to_owned(),
         places,
-    })
-}
-
-/// A name that two columns share, and the number of the body that one of them belongs to.
-fn name_twice(columns: &[Column], bodies: &[&str]) -> Option<(usize, String)> {
-    let all = Column::listed(columns, bodies);
-    all.iter().enumerate().find_map(|(number, (column, body))| {
-        let (_, other) = all[..number].iter().find(|(other, _)| other.name == column.name)?;
-        Some((body.or(*other)?, column.name.clone()))
-    })
-}
-
-/// A body, the place of its name, and whether it has a place in space.
-fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>, bool), SpanMessage> {
-    let span = body.span();
-    let BodyTable { name, m, moments, J_d, J, kinetic, position, moving, start } = body.into_inner();
-    // The name of a body is the prefix of its columns.
-    let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);
-    if name.get_ref().is_empty() || !name.get_ref().chars().all(is_plain) {
-        return Err((name.span(), "the `name` of a body has letters, digits, - and _ only".to_owned()));
-    }
-    if name.get_ref() == SPACE {
-        return Err((name.span(), "`space` is what bodies move in; give the body another name".to_owned()));
-    }
-    let J = match (moments, J_d, J) {
-        (Some(Moments { J, .. }), None, None) | (None, None, Some(InertiaRows(J))) => J,
-        (None, Some(NonstandardMoments(J_d)), None) => NonstandardInertia::from(J_d).to_inertia(),
-        _ => return Err((span, INERTIA.to_owned())),
     };
-    if let Some(kinetic) = kinetic.as_ref().filter(|kinetic| kinetic.get_ref().order() != 2) {
-        let message = "a body among several is `geodesic`, `rigid` or `cayley`: joints and springs are of second order";
-        return Err((kinetic.span(), message.to_owned()));
+    let all = system.all_columns();
+    system.columns = system.output.columns(&all, &DEFAULT)?;
+    name_twice(&system.columns)
+        .map_or(Ok(()), |name| Err(shared(&name, &system.names().collect::<Vec<_>>(), &names)))?;
+    for event in table.event {
+        let span = event.span();
+        let mut event = event.into_inner();
+        event.placed((&all, &quaternions(&all)), Err(SEVERAL), &|| span.clone())?;
+        system.event.push(event);
     }
-    let kinetic = kinetic.map_or(Kinetic::Geodesic, Spanned::into_inner);
-    let has_place = position.is_some();
-    let wrong = match (has_place, start.is_some(), moving.is_some()) {
-        (true, false, _) => Some("a body with a `position` has a `start`, too: its attitude and angular velocity"),
-        (false, true, _) => Some("a body with a `start` has a `position`, too; one that joints place has neither"),
-        (false, false, true) => {
-            Some("a body that is `moving` has a `position` and a `start`; joints have `rate` and `speed`")
+    Ok(system)
+}
+
+/// The columns of a table by default.
+const DEFAULT: [&str; 4] = ["position", "quaternion", "energy", "gap"];
+
+const SEVERAL: &str =
+    "only a single body has this quantity: of several an event has a `column` with a `value`, or an `energy`";
+
+/// The places of quaternions among the numbers of these columns.
+pub(crate) fn quaternions(all: &[Column]) -> Vec<usize> {
+    let parts = all.iter().filter(|column| column.key() == "quaternion").filter_map(Column::part);
+    parts.flat_map(|part| part.step_by(4)).collect()
+}
+
+/// The names of the joints, given or by their numbers from one.
+fn names_of_joints(joints: &[Spanned<JointTable>]) -> Result<Vec<String>, SpanMessage> {
+    let mut taken = BTreeSet::new();
+    let mut name = |(number, joint): (usize, &Spanned<JointTable>)| {
+        let Some(name) = &joint.get_ref().name else { return Ok(format!("joint-{}", number + 1)) };
+        if !is_plain(name.get_ref()) {
+            return Err((name.span(), "the `name` of a joint has letters, digits, - and _ only".to_owned()));
         }
-        _ => None,
+        if !taken.insert(name.get_ref().clone()) {
+            return Err((name.span(), format!("there are two joints called `{}`", name.get_ref())));
+        }
+        Ok(name.get_ref().clone())
     };
-    if let Some(message) = wrong {
-        return Err((name.span(), message.to_owned()));
-    }
-    let moving = moving.map_or_else(Vector3::zeros, |moving| moving.value);
-    let position = position.map_or_else(Vector3::zeros, |position| position.value);
-    let start = start.unwrap_or(Start { attitude: UnitQuaternion::identity(), velocity: Vector3::zeros() });
-    let place = name.span();
-    let body = SystemBody { name: name.into_inner(), m: m.value, J, kinetic, position, moving, start };
-    Ok((body, place, has_place))
+    joints.iter().enumerate().map(&mut name).collect()
 }
 
-/// The name of space among bodies.
-const SPACE: &str = "space";
+/// A name that two columns share.
+fn name_twice(columns: &[Column]) -> Option<String> {
+    let mut taken = BTreeSet::new();
+    Column::listed(columns).into_iter().map(|column| column.name).find(|name| !taken.insert(name.clone()))
+}
+
+/// The mistake of the body whose columns share a name with others, at the place of its name.
+fn shared(name: &str, bodies: &[&str], names: &[Range<usize>]) -> SpanMessage {
+    let owns = |owner: &str| name.strip_prefix(owner).is_some_and(|rest| rest.starts_with('_'));
+    let body = bodies.iter().zip(names).rfind(|(body, _)| owns(body));
+    let (place, owner) = body.map_or((0..0, "joint"), |(_, place)| (place.clone(), "body"));
+    (place, format!("two columns of the table would be called `{name}`: give the {owner} another name"))
+}
 
 /// The numbers of two named bodies.
 fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], SpanMessage> {

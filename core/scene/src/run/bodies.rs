@@ -42,6 +42,21 @@ pub(crate) struct HeavyBody {
     pub(crate) up: Vector3<f64>,
 }
 
+/// A point mass with its weight.
+#[lagrangian(
+    group(d = R3),
+    advected(x = d.seen_from(space)),
+    l_d = m * d.norm_squared() / (2.0 * h) - 0.5 * h * m * g * (x + x + d).dot(&up),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HeavyPoint {
+    /// Mass, kg.
+    m: f64,
+    /// Acceleration of gravity, m/s².
+    g: f64,
+    up: Vector3<f64>,
+}
+
 /// A spring between a point of one body and a point of another, which mustn't meet.
 #[lagrangian(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
@@ -84,16 +99,11 @@ impl System {
         for body in &self.bodies {
             let is = |kinetic| f64::from(u8::from(body.kinetic == kinetic));
             let [rigid, geodesic, cayley] = [Kinetic::Rigid, Kinetic::Geodesic, Kinetic::Cayley].map(is);
-            system.body(HeavyBody {
-                J: body.J,
-                J_d: body.J.to_nonstandard(),
-                rigid,
-                geodesic,
-                cayley,
-                m: body.m,
-                g,
-                up,
-            });
+            let m = body.m;
+            match body.J {
+                Some(J) => system.body(HeavyBody { J, J_d: J.to_nonstandard(), rigid, geodesic, cayley, m, g, up }),
+                None => system.body(HeavyPoint { m, g, up }),
+            };
         }
         for &Between { bodies, of: Spring { k, length, at: [at_1, at_2] } } in &self.springs {
             if length == 0.0 {

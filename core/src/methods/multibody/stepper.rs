@@ -4,7 +4,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 roots!();
 
@@ -17,7 +17,7 @@ use super::state::{Offsets, body_at, layout};
 use super::system::{Multibody, ends};
 use super::terms::{BodyTerm, space};
 use super::workspace::with_workspace;
-use super::{Body, place};
+use super::{Body, parts, place};
 use crate::error::{SetupError, StepError};
 use crate::mechanics::SceneVisitor;
 use crate::motion::Layout;
@@ -341,6 +341,27 @@ impl MultibodyStepper {
         let mut state = state.to_vec();
         with_workspace(|work| self.step_in(&mut state, work, Some(&mut forces), false))?;
         Ok(forces)
+    }
+
+    /// The forces of the joints on their bodies below in the step from this state, N, and their torques about the origins of
+    /// these bodies, N m, both in the axes of space: the sums of [`reactions`](Self::reactions) along the gradients.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`](Self::step).
+    pub fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+        let places: Vec<_> = self.attitudes(state).iter().map(place).collect();
+        let axes = Matrix3::identity();
+        let force = |(joined, multipliers): (&Joint, Vector6<f64>)| {
+            let (mut unused, mut slopes) = (Matrix6::zeros(), Matrix6::zeros());
+            let at = [joined.above.map_or(&Place::SPACE, |above| &places[above]), &places[joined.below]];
+            joined.functions.slopes(at, [None, Some(&axes)], [&mut unused, &mut slopes]);
+            let rows = joined.functions.rows();
+            let sum = (0..rows).fold(Vector6::zeros(), |sum, row| sum + slopes.column(row) * multipliers[row]);
+            let (torque, force) = parts(&sum);
+            [force, torque]
+        };
+        Ok(self.joints().iter().zip(self.reactions(state)?).map(force).collect())
     }
 
     /// The configurations of both ends of a term between two bodies.
