@@ -59,11 +59,11 @@ fn sample(system: &System, stepper: &MultibodyStepper, now: &Moment<'_, AnyStepp
     let mut sample = bodies_at(stepper, now);
     let Sample { bodies, energy, momentum, angular_momentum, gap, .. } = &sample;
     let mut numbers: Vec<f64> = Vec::new();
-    bodies.iter().for_each(|body| numbers.extend(&body.position));
+    numbers.extend(bodies.iter().flat_map(|body| &body.position));
     let first = numbers.len();
-    bodies.iter().for_each(|body| numbers.extend(body.quaternion));
-    bodies.iter().for_each(|body| numbers.extend(&body.velocity));
-    bodies.iter().for_each(|body| numbers.extend(&body.moving));
+    numbers.extend(bodies.iter().flat_map(|body| body.quaternion));
+    numbers.extend(bodies.iter().flat_map(|body| &body.velocity));
+    numbers.extend(bodies.iter().flat_map(|body| &body.moving));
     numbers.push(*energy);
     numbers.extend(momentum.iter().chain(angular_momentum));
     numbers.push(*gap);
@@ -74,7 +74,7 @@ fn sample(system: &System, stepper: &MultibodyStepper, now: &Moment<'_, AnyStepp
     if has_reactions {
         let none = || vec![[Vector3::repeat(f64::NAN); 2]; system.joints.len()];
         let forces = stepper.joint_forces(now.numbers()).unwrap_or_else(|_| none());
-        forces.iter().for_each(|[force, _]| numbers.extend(force));
+        numbers.extend(forces.iter().flat_map(|[force, _]| force));
         for (joint, [force, torque]) in system.joints.iter().zip(&forces) {
             // About the joint's point, which the bodies share in most kinds.
             let arm = pose(stepper, now.numbers(), joint.bodies[1]).0 * joint.of.at[1];
