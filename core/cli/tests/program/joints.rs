@@ -166,6 +166,54 @@ fn each_kind_holds() {
     assert!((end(&run(rod), 0).norm() - 0.5).abs() < 1e-14);
 }
 
+/// A composition of the step is of its order with joints, too: a double pendulum on pins and a rod on a ball joint at the end of
+/// it. Friction has no composition.
+#[test]
+fn a_composition_is_of_order_four() {
+    let text = SWING.replacen(
+        "[[joint]]\nkind = \"pin\"\nbodies = [\"right\", \"space\"]",
+        "[[spring]]\nk = 30\nlength = 0.2\nbodies = [\"right\", \"space\"]",
+        1,
+    );
+    let text = text
+        .replace("at = [[0, 0, 0.5], [1, 0, 0]]\naxes = [[0, 1, 0], [0, 1, 0]]\n", "at = [[0, 0, 0.5], [1, 0.5, 0]]\n");
+    let ball = "kind = \"ball\"\nbodies = [\"right\", \"seat\"]\nat = [[0, 0, -0.5], [0.5, 0, 0]]\n";
+    let text = text.replace(&format!("kind = \"pin\"\nbodies = [\"right\", \"seat\"]\nat = [[0, 0, -0.5], [0.5, 0, 0]]\naxes = [[0, 1, 0], [0, 1, 0]]\nrate = -2\n"), ball);
+    let by = |method: &str, step: &str| {
+        let text = text.replace("step = \"1 ms\"", &format!("step = {step}\n{method}"));
+        let run = run(&text);
+        assert!(run.samples().iter().all(|sample| sample.gap < 1e-13));
+        let end = run.samples().last().unwrap();
+        (end.bodies[1].position, *end.bodies[1].attitude.as_matrix())
+    };
+    let suzuki = "method = { composition = \"Suzuki 4\" }";
+    let reference = by("method = { composition = \"Kahan-Li 8\" }", "0.0025");
+    let off = |method: &str, step: &str| {
+        let (place, attitude) = by(method, step);
+        [(place - reference.0).norm(), (attitude - reference.1).norm()]
+    };
+    for (method, steps, order) in [("", ["0.004", "0.002"], 2.0), (suzuki, ["0.01", "0.005"], 4.0)] {
+        let (coarse, fine) = (off(method, steps[0]), off(method, steps[1]));
+        for (coarse, fine) in coarse.iter().zip(fine) {
+            let found = (coarse / fine).log2();
+            println!("{method}: {coarse:e}, {fine:e}, of order {found}");
+            assert!((found - order).abs() < 0.05, "{method}: {coarse:e}, {fine:e}, of order {found}");
+        }
+    }
+    let refused = |change: &dyn Fn(&str) -> String| {
+        message(&change(&text.replace("step = \"1 ms\"", &format!("step = 0.01\n{suzuki}"))))
+    };
+    let friction = refused(&|text| text.replacen("rate = 2", "rate = 2\ndamping = 0.1", 1));
+    assert!(
+        friction.ends_with(
+            "a composition has steps back, in which friction adds energy, and `joint-1` has some: leave one of both out"
+        ),
+        "{friction}"
+    );
+    let other = refused(&|text| text.replace("composition = \"Suzuki 4\"", "collocation = 4"));
+    assert!(other.ends_with("several bodies have their own step, or a `composition` of it"), "{other}");
+}
+
 fn free_pin(keys: &str, rest: &str) -> String {
     format!(
         "title = \"a\"\n[[body]]\nname = \"a\"\nm = 2\nmoments = [0.3, 0.4, 0.5]\n[[joint]]\nkind = \"pin\"\n\

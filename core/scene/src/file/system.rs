@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use liestep::recording;
+use liestep::with::Scheme;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
@@ -12,6 +13,7 @@ use toml::Spanned;
 use crate::file::column::{Column, Output};
 use crate::file::event::{Event, Quantity};
 use crate::file::joint::{Joint, JointTable, Limits, Names};
+use crate::file::method::scheme;
 use crate::file::mistake::{Mistake, SpanMessage, advised, place_of};
 use crate::file::part::{Between, BodyTable, SPACE, SystemBody, is_plain};
 use crate::file::picture::PlanePicture;
@@ -35,7 +37,7 @@ use crate::file::text::title;
 /// | | `limits` of a pin or a slider: `from` and `to`, angles or shifts, and whether the run is to `stop` where the joint passes one of them. They aren't imposed but watched: each passing is an event with the joint's name |
 /// | `[[spring]]` | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
 /// | `[[event]]` | as for [one body](crate::SceneFile), with an `energy`, or a `column` of the table and its `value`: `upper_z`, `joint-1_angle` |
-/// | `run` | `duration`; `step`, of which the duration is a whole number; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
+/// | `run` | `duration`; `step`, of which the duration is a whole number; `method`: `step`, or a `composition` by its name, as for [one body](crate::SceneFile), of systems without friction; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
 /// | `picture` | `plane`: `xy`, `xz`, `yz`; by default the plane in which the motion is the widest |
 /// | `output` | `columns` that follow the time in a table, see [`Column`]; `every`: the number of steps from row to row |
 ///
@@ -50,6 +52,7 @@ pub struct System {
     pub(crate) springs: Vec<Between<Spring>>,
     pub(crate) step: f64,
     pub(crate) steps: u32,
+    pub(crate) method: Scheme,
     pub(crate) nearest: bool,
     pub(crate) picture: PlanePicture,
     pub(crate) output: Output,
@@ -116,10 +119,15 @@ struct SpringTable {
 #[serde(deny_unknown_fields)]
 struct RunTable {
     step: Spanned<PositiveScalar<Duration>>,
+    method: Option<Spanned<MethodTable>>,
     duration: Spanned<PositiveScalar<Duration>>,
     #[serde(default)]
     nearest: bool,
 }
+
+/// A method by its name.
+#[derive(Deserialize)]
+struct MethodTable(#[serde(deserialize_with = "scheme")] Scheme);
 
 impl System {
     /// Parses the system of a text; `path` appears in messages.
@@ -263,6 +271,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     if let Some(message) = fraction(step, duration) {
         return Err((table.run.duration.span(), message));
     }
+    let method = table.run.method;
     let mut system = System {
         title: table.title,
         bodies,
@@ -272,6 +281,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         springs,
         step,
         steps,
+        method: Scheme::Step,
         nearest: table.run.nearest,
         picture: table.picture,
         output: table.output,
@@ -284,6 +294,10 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     system.columns = system.output.columns(&all, &DEFAULT)?;
     name_twice(&system.columns)
         .map_or(Ok(()), |name| Err(shared(&name, &system.names().collect::<Vec<_>>(), &names)))?;
+    if let Some(method) = method {
+        let (span, MethodTable(scheme)) = (method.span(), method.into_inner());
+        system.method = of_method(scheme, &system).map_err(|message| (span, message))?;
+    }
     for event in table.event {
         let span = event.span();
         let mut event = event.into_inner();
@@ -291,6 +305,28 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         system.event.push(event);
     }
     Ok(system)
+}
+
+/// A method, or why the system can't have it.
+fn of_method(scheme: Scheme, system: &System) -> Result<Scheme, String> {
+    match scheme {
+        Scheme::Step => Ok(scheme),
+        Scheme::Composition(composition) if composition.base() != 2 => {
+            let (name, base) = (composition.name(), composition.base());
+            Err(format!("{name} composes a step of order {base}, and that of several bodies is of order 2"))
+        }
+        Scheme::Composition(_) => {
+            let has_friction = |joint: &Between<Joint>| joint.of.terms.damping.or(joint.of.terms.friction.map(|_| 0.0));
+            match system.joints.iter().position(|joint| has_friction(joint).is_some()) {
+                Some(joint) => Err(format!(
+                    "a composition has steps back, in which friction adds energy, and `{}` has some: leave one of both out",
+                    system.joint_names[joint]
+                )),
+                None => Ok(scheme),
+            }
+        }
+        _ => Err("several bodies have their own step, or a `composition` of it".to_owned()),
+    }
 }
 
 /// The columns of a table by default.

@@ -4,6 +4,7 @@ use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorq
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
 use liestep::methods::{Multibody, MultibodyStepper, Redundancy};
+use liestep::with::Scheme;
 use liestep::{NonstandardInertia, SO3, SetupError, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
@@ -119,7 +120,9 @@ impl System {
         }
         let places: Vec<_> = self.given().into_iter().map(|(place, _)| place).collect();
         let (system, left_out) = system.independent(&places)?;
-        Ok((system.stepper(self.step)?, left_out))
+        let stepper = system.stepper(self.step)?;
+        let stepper = if let Scheme::Composition(scheme) = self.method { stepper.composed(scheme)? } else { stepper };
+        Ok((stepper, left_out))
     }
 
     /// The file's initial configurations and velocities.

@@ -160,6 +160,6 @@ impl System {
             second.joints.iter_mut().for_each(|joint| joint.of.limits = None);
             second.simulate(u64::from(steps), Listeners { progress: &mut |_| (), table: None })
         };
-        line(run, 2, None, again).unwrap_or_default()
+        line(run, self.method.order(), None, again).unwrap_or_default()
     }
 }

@@ -59,6 +59,7 @@ impl MultibodyStepper {
             return Err(SetupError::NonFinite { what: "velocity of the momentum" });
         }
         self.check_start(attitudes, momenta)?;
+        self.check_symmetry(&state)?;
         Ok(state.into())
     }
 

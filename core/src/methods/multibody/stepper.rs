@@ -1,6 +1,7 @@
 //! The stepper of a system of bodies.
 
 use alloc::string::String;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
 
@@ -8,6 +9,7 @@ use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 roots!();
 
+use super::composed::Stages;
 use super::constraint::Place;
 use super::couplings::{Coupling, couplings};
 use super::equations::{gap, gap_of_all};
@@ -59,6 +61,8 @@ pub struct MultibodyStepper {
     pub(super) lengths: Vec<f64>,
     /// Whether a body has no velocity without its joints.
     pub(super) has_point_masses: bool,
+    /// The stages of a composition.
+    pub(super) stages: Option<Arc<Stages>>,
     pub(super) layout: Layout,
     pub(super) offsets: Offsets,
 }
@@ -112,10 +116,22 @@ impl MultibodyStepper {
             system.joints.iter().enumerate().filter(|(_, joined)| is_reduced(joined)).map(|(k, _)| k).collect();
         let place = |body: usize| system.terms.partition_point(|(of, _)| *of < body);
         let ranges = (0..system.bodies).map(|body| place(body)..place(body + 1)).collect();
-        let (layout, offsets) = (layout(system.bodies), Offsets::of(system.bodies));
+        let (layout, offsets, stages) = (layout(system.bodies, 1), Offsets::of(system.bodies, 1), None);
         let (lengths, has_point_masses) = (Vec::new(), false);
-        let mut stepper =
-            Self { h, system, ranges, tree, reduced, couplings, free, lengths, has_point_masses, layout, offsets };
+        let mut stepper = Self {
+            h,
+            system,
+            ranges,
+            tree,
+            reduced,
+            couplings,
+            free,
+            lengths,
+            has_point_masses,
+            stages,
+            layout,
+            offsets,
+        };
         let at_origin = alloc::vec![space(); stepper.bodies()];
         stepper.check_inertias(&at_origin)?;
         stepper.has_point_masses = (0..stepper.bodies()).any(|body| is_point_mass(&stepper.at_rest(body, &space()).2));
@@ -173,6 +189,10 @@ impl MultibodyStepper {
             visitor.parameter("body above", number(joined.above));
             visitor.parameter("body below", number(Some(joined.below)));
             joined.functions.describe(&mut |name, value| visitor.parameter(name, value));
+        }
+        if let Some(stages) = &self.stages {
+            visitor.term(stages.scheme.name());
+            stages.gammas().for_each(|gamma| visitor.parameter("gamma", gamma));
         }
     }
 
@@ -375,7 +395,8 @@ impl MultibodyStepper {
     ///
     /// [`SetupError::InvalidStep`] for an impossible one.
     pub fn with_step(&self, h: f64) -> Result<Self, SetupError> {
-        Self::of(self.system.refolded(1.0), h)
+        let single = Self::of(self.system.refolded(1.0), h)?;
+        self.stages.as_ref().map_or(Ok(single.clone()), |stages| single.composed(stages.scheme))
     }
 
     /// Sets the memory of a state to that of a new start.
@@ -384,7 +405,11 @@ impl MultibodyStepper {
         let momenta = self.momenta(state);
         let mut halves = momenta.clone();
         self.estimate(&bodies, &momenta, &mut halves);
-        self.offsets.begin(state, &halves);
+        let gammas = self.stages.as_ref().map_or_else(|| alloc::vec![1.0], |stages| stages.gammas().collect());
+        for (stage, gamma) in gammas.into_iter().enumerate() {
+            let of_stage: Vec<_> = halves.iter().map(|half| half * gamma).collect();
+            self.offsets.begin(state, stage, &of_stage);
+        }
     }
 }
 

@@ -39,6 +39,9 @@ pub(super) struct Workspace {
     pub(super) equations: Equations,
     /// A state before a run.
     pub(super) before: Vec<f64>,
+    /// A state during the stages of a step, and that of one stage.
+    pub(super) whole: Vec<f64>,
+    pub(super) of_stage: Vec<f64>,
 }
 
 impl Workspace {
