@@ -2,7 +2,7 @@
 
 use declarations::FallingBody;
 use liestep::effects::joints::JointDamping;
-use liestep::groups::{LieGroup as _, R3};
+use liestep::groups::R3;
 use liestep::methods::{Joint, Multibody};
 use liestep::{NonstandardInertia, SO3};
 use nalgebra::Vector3;
@@ -16,12 +16,12 @@ const MOMENT: f64 = 0.1;
 /// The step, s.
 const STEP: f64 = 0.01;
 
-/// Means of the energy over a tenth of the steps each, and the largest excess over its start, of a row of links that falls from a
-/// ball joint and turns about all axes. The friction of each joint is `c = x J/h`.
+/// Means of the energy over a tenth of the steps each, and the largest excess over its start, of links that hang on a ball joint
+/// and turn about all axes. The friction of each joint is `c = x J/h`.
 fn tenths(x: f64, steps: u32) -> (Vec<f64>, f64) {
     let mut system = Multibody::new();
-    let half = Vector3::x() * 0.5;
-    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(0.02, MOMENT, MOMENT)).unwrap();
+    let half = Vector3::z() * -0.5;
+    let J_d = NonstandardInertia::from_principal_moments(Vector3::new(MOMENT, MOMENT, 0.02)).unwrap();
     for k in 0..usize::from(LINKS) {
         let body = system.body(FallingBody { m: 1.0, J_d, g: 9.81, up: Vector3::z() });
         let before = k.checked_sub(1);
@@ -32,9 +32,9 @@ fn tenths(x: f64, steps: u32) -> (Vec<f64>, f64) {
         }
     }
     let stepper = system.stepper(STEP).unwrap();
-    let row: Vec<Body> = (0..LINKS).map(|k| (SO3::identity(), R3::from(Vector3::x() * (0.5 + f64::from(k))))).collect();
+    let row: Vec<Body> = (0..LINKS).map(|k| (SO3::identity(), R3::from(half * (1.0 + 2.0 * f64::from(k))))).collect();
     let turning =
-        |k: u8| Vector3::new(0.5 - 0.05 * f64::from(k), (f64::from(k) * 1.3).sin(), (f64::from(k) * 0.7).cos());
+        |k: u8| Vector3::new((f64::from(k) * 1.3).sin(), (f64::from(k) * 0.7).cos(), 0.5 - 0.05 * f64::from(k));
     let velocities: Vec<_> = (0..LINKS).map(|k| six(&turning(k), &Vector3::zeros())).collect();
     let mut state = stepper.start_nearest(&row, &velocities).unwrap();
     let start = stepper.energy(&state);
@@ -67,7 +67,7 @@ fn assert_falls(steps: u32) {
 
 #[test]
 fn a_chain_of_twenty_with_friction() {
-    assert_falls(2000);
+    assert_falls(1000);
 }
 
 #[test]
