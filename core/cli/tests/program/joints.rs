@@ -214,6 +214,29 @@ fn a_composition_is_of_order_four() {
     assert!(other.ends_with("several bodies have their own step, or a `composition` of it"), "{other}");
 }
 
+/// A row of a thousand bodies on pins with friction: read, placed by its joints, and closed after some steps.
+#[test]
+fn a_thousand_bodies() {
+    let mut text = "title = \"row\"\ngravity = { g = 9.81, up = [0, 0, 1] }\n".to_owned();
+    for k in 0..1000 {
+        text += &format!("[[body]]\nname = \"b{k}\"\nm = 0.1\ncylinder = {{ radius = 0.01, length = 0.1 }}\n");
+    }
+    for k in 0..1000 {
+        let (above, at) = if k == 0 { ("space".to_owned(), 0.0) } else { (format!("b{}", k - 1), -0.05) };
+        text += &format!(
+            "[[joint]]\nkind = \"pin\"\nbodies = [\"{above}\", \"b{k}\"]\nat = [[0, 0, {at}], [0, 0, 0.05]]\n\
+             axes = [[0, 1, 0], [0, 1, 0]]\nangle = 0.01\ndamping = 1e-4\n"
+        );
+    }
+    let run = run(&(text + "[run]\nstep = 1e-3\nduration = 5e-3\n"));
+    let energies: Vec<f64> = run.samples().iter().map(|sample| sample.energy).collect();
+    assert_eq!((run.steps(), run.samples()[0].bodies.len()), (5, 1000));
+    assert!(run.samples().iter().all(|sample| sample.gap < 1e-12), "{}", run.samples()[5].gap);
+    // It falls from rest: the energy is lost by friction alone.
+    assert!(energies.windows(2).all(|pair| pair[1] <= pair[0] + 1e-9), "{energies:?}");
+    assert!((end(&run, 999) - run.samples()[0].bodies[999].position).norm() > 1e-5);
+}
+
 fn free_pin(keys: &str, rest: &str) -> String {
     format!(
         "title = \"a\"\n[[body]]\nname = \"a\"\nm = 2\nmoments = [0.3, 0.4, 0.5]\n[[joint]]\nkind = \"pin\"\n\

@@ -1,6 +1,6 @@
 //! The file of a system of several bodies.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ use crate::file::column::{Column, Output};
 use crate::file::event::{Event, Quantity};
 use crate::file::joint::{Joint, JointTable, Limits, Names};
 use crate::file::method::scheme;
-use crate::file::mistake::{Mistake, SpanMessage, advised, place_of};
+use crate::file::mistake::{Lines, Mistake, SpanMessage, advised};
 use crate::file::part::{Between, BodyTable, SPACE, SystemBody, is_plain};
 use crate::file::picture::PlanePicture;
 use crate::file::placed::place;
@@ -138,7 +138,8 @@ impl System {
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self, Mistake> {
         let path = path.as_ref();
         let table: SystemTable = toml::from_str(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
-        let place = |span: &Range<usize>| place_of(text, span);
+        let lines = Lines::of(text);
+        let place = |span: &Range<usize>| lines.place(span.start);
         let places = SystemPlaces {
             bodies: table.body.iter().map(|body| place(&body.span())).collect(),
             joints: table.joint.iter().map(|joint| place(&joint.span())).collect(),
@@ -228,11 +229,11 @@ impl System {
 
 fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<System, SpanMessage> {
     let (mut bodies, mut names): (Vec<SystemBody>, Vec<Range<usize>>) = Default::default();
-    let mut is_placed = Vec::new();
+    let (mut is_placed, mut numbered) = (Vec::new(), BTreeMap::new());
     for body in table.body {
         let span = body.span();
         let (body, name, has_place) = body.into_inner().body(span)?;
-        if bodies.iter().any(|other| other.name == body.name) {
+        if numbered.insert(body.name.clone(), bodies.len()).is_some() {
             return Err((name, format!("there are two bodies called `{}`", body.name)));
         }
         bodies.push(body);
@@ -246,7 +247,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     let columns = table.output.columns(&Column::of_system(&called, &[]), &DEFAULT)?;
     name_twice(&columns).map_or(Ok(()), |name| Err(shared(&name, &called, &names)))?;
     let joint_names = names_of_joints(&table.joint)?;
-    let joints = table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies));
+    let joints = table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), (&bodies, &numbered)));
     let (joints, coordinates): (Vec<_>, Vec<_>) = joints.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
     let (placing, unplaced) = place(&mut bodies, &mut is_placed, &joints);
     if let Some(body) = unplaced {
@@ -262,7 +263,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     let springs = table.spring.into_iter().map(|spring| {
         let SpringTable { bodies: names, at, k, length } = spring.into_inner();
         let spring = Spring { k: k.value, length: length.value, at: at.map(|point| point.value) };
-        Ok(Between { bodies: numbers(&names, &bodies)?, of: spring })
+        Ok(Between { bodies: numbers(&names, (&bodies, &numbered))?, of: spring })
     });
     let springs = springs.collect::<Result<_, SpanMessage>>()?;
     let step = table.run.step.get_ref().value;
@@ -371,14 +372,17 @@ fn shared(name: &str, bodies: &[&str], names: &[Range<usize>]) -> SpanMessage {
     (place, format!("two columns of the table would be called `{name}`: give the {owner} another name"))
 }
 
+/// The bodies, and their numbers by name.
+type Named<'a> = (&'a [SystemBody], &'a BTreeMap<String, usize>);
+
 /// The numbers of two named bodies.
-fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], SpanMessage> {
+fn numbers(names: &Names, (bodies, numbered): Named<'_>) -> Result<[Option<usize>; 2], SpanMessage> {
     let mut numbers = [None; 2];
     for (number, name) in numbers.iter_mut().zip(names.get_ref()) {
         if name.get_ref() == SPACE {
             continue;
         }
-        *number = bodies.iter().position(|body| body.name == *name.get_ref());
+        *number = numbered.get(name.get_ref()).copied();
         if number.is_none() {
             let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
             let message = format!("unknown body `{}`, expected one of {}, `{SPACE}`", name.get_ref(), known.join(", "));
@@ -392,7 +396,7 @@ fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], S
 }
 
 /// The joint of two named bodies, and the place of its coordinates at the start. Space comes first.
-fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<(Between<Joint>, Option<Range<usize>>), SpanMessage> {
+fn joint_of(joint: JointTable, bodies: Named<'_>) -> Result<(Between<Joint>, Option<Range<usize>>), SpanMessage> {
     let mut between = numbers(&joint.bodies, bodies)?;
     let (is_swapped, coordinate) = (between[1].is_none(), joint.coordinate());
     if is_swapped {
