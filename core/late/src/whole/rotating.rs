@@ -15,7 +15,7 @@ use liestep_derivation::{Array, Stages};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::code::Backend;
-use crate::declaration::{All, Declaration, Ready, ready};
+use crate::declaration::{Declaration, Ready, ready};
 use crate::error::LateError;
 
 /// The directions of space as seen from the body: the rows of the attitude.
@@ -23,7 +23,7 @@ type Directions = (Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
 /// The code of the stages, by the directions of space.
 #[derive(Debug)]
-struct ByDirections<C>(All<C>);
+struct ByDirections<C>(Arc<Stages<Ready<C>>>);
 
 /// A declaration on SO(3) with the numbers of its parameters.
 #[derive(Debug)]
@@ -59,7 +59,7 @@ impl<B: Backend<f64>> RotatingScene<B> {
     pub(super) fn of(declaration: &'static Declaration, numbers: &[f64]) -> Result<Self, LateError> {
         let stages = declaration.once(|| {
             let programs = in_directions(declaration).map_err(LateError::Step)?;
-            Ok(ByDirections(Arc::new(ready::<f64, B>(&programs)?)))
+            Ok(ByDirections(Arc::new(ready::<B>(&programs)?)))
         })?;
         Ok(Self { declaration, stages: Arc::clone(&stages.0), numbers: numbers.into() })
     }
