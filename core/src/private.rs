@@ -8,7 +8,9 @@ pub use liestep_macros::{constraint, force, lagrangian, matrix_group};
 
 // Names in an expanded declaration.
 pub use crate::error::SetupError;
-pub use crate::groups::rotation_functions::{inverse, log_ratio, rotation_exp, rotation_log, stumpff};
+pub use crate::groups::rotation_functions::{
+    inverse, log_ratio, log_ratio_series, rotation_exp, rotation_log, stumpff, stumpff_series,
+};
 pub use crate::groups::{CayleyRetraction, Configuration, Relative, Retraction, SeenFrom};
 pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor};
 pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};

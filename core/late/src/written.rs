@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use liestep::__private::{log_ratio_series, stumpff_series};
 use liestep_derivation::whole::{MatrixFactor, Programs, WholeStep};
 use liestep_derivation::{Array, Function, Operation, Program};
 
@@ -16,7 +17,7 @@ enum Language {
 }
 
 impl Language {
-    fn applied(self, function: Function, value: u32) -> Result<String, LateError> {
+    fn applied(self, function: Function, value: u32) -> String {
         let name = match function {
             Function::Sqrt => "sqrt",
             Function::Ln if self == Self::C => "log",
@@ -24,15 +25,16 @@ impl Language {
             Function::Exp => "exp",
             Function::Sin => "sin",
             Function::Cos => "cos",
-            Function::Stumpff(k) if self == Self::Rust => return Ok(format!("stumpff::<_, {k}>(x{value})")),
-            Function::LogRatio(k) if self == Self::Rust => return Ok(format!("log_ratio::<_, {k}>(x{value})")),
-            other => return Err(LateError::Function(format!("{other:?} in C"))),
+            Function::Stumpff(k) if self == Self::Rust => return format!("stumpff::<_, {k}>(x{value})"),
+            Function::LogRatio(k) if self == Self::Rust => return format!("log_ratio::<_, {k}>(x{value})"),
+            Function::Stumpff(k) => return format!("stumpff({k}, stumpff_{k}, x{value})"),
+            Function::LogRatio(k) => return format!("log_ratio({k}, log_ratio_{k}, x{value})"),
         };
-        Ok(if self == Self::C { format!("{name}(x{value})") } else { format!("x{value}.{name}()") })
+        if self == Self::C { format!("{name}(x{value})") } else { format!("x{value}.{name}()") }
     }
 
     /// The statements of a program, one a line.
-    fn body(self, program: &Program) -> Result<String, LateError> {
+    fn body(self, program: &Program) -> String {
         let declared = if self == Self::C { "const double" } else { "let" };
         let values = program.inputs.iter().map(|source| match (self, source.array) {
             (Self::Rust, Array::Step) => "h".to_owned(),
@@ -41,24 +43,22 @@ impl Language {
             (Self::C, array) => format!("in->{}[{}]", name(array), source.at),
         });
         let literals = program.literals.iter().map(|literal| format!("{literal:?}"));
-        let operations = program.operations.iter().map(|&operation| {
-            Ok::<_, LateError>(match operation {
-                Operation::Negate(a) => format!("-x{a}"),
-                Operation::Add(a, b) => format!("x{a} + x{b}"),
-                Operation::Subtract(a, b) => format!("x{a} - x{b}"),
-                Operation::Multiply(a, b) => format!("x{a} * x{b}"),
-                Operation::Divide(a, b) => format!("x{a} / x{b}"),
-                Operation::Apply(function, a) => self.applied(function, a)?,
-            })
+        let operations = program.operations.iter().map(|&operation| match operation {
+            Operation::Negate(a) => format!("-x{a}"),
+            Operation::Add(a, b) => format!("x{a} + x{b}"),
+            Operation::Subtract(a, b) => format!("x{a} - x{b}"),
+            Operation::Multiply(a, b) => format!("x{a} * x{b}"),
+            Operation::Divide(a, b) => format!("x{a} / x{b}"),
+            Operation::Apply(function, a) => self.applied(function, a),
         });
         let mut text = String::new();
-        for (at, value) in values.chain(literals).map(Ok).chain(operations).enumerate() {
-            let _ = writeln!(text, "    {declared} x{at} = {};", value?);
+        for (at, value) in values.chain(literals).chain(operations).enumerate() {
+            let _ = writeln!(text, "    {declared} x{at} = {value};");
         }
         for (at, output) in program.outputs.iter().enumerate() {
             let _ = writeln!(text, "    outputs[{at}] = x{output};");
         }
-        Ok(text)
+        text
     }
 }
 
@@ -103,13 +103,10 @@ fn stages(declaration: &Declaration) -> [(&'static str, &Program); 5] {
 
 /// The straight-line code of a step in Rust, as the macro passes it to the compiler: a function for each stage. Each
 /// iteration has what the macro computes before a solve.
-///
-/// # Errors
-///
-/// None for Rust; the type is that of [`c`].
-pub fn rust(declaration: &Declaration) -> Result<String, LateError> {
+#[must_use]
+pub fn rust(declaration: &Declaration) -> String {
     let mut text = format!("//! The stages of a step of `{}`.\n", declaration.name);
-    if stages(declaration).iter().any(|(_, program)| has_own_functions(program)) {
+    if stages(declaration).iter().any(|(_, program)| own_functions(program).next().is_some()) {
         text += "\nuse liestep::__private::{log_ratio, stumpff};\n";
     }
     for (stage, program) in stages(declaration) {
@@ -118,20 +115,50 @@ pub fn rust(declaration: &Declaration) -> Result<String, LateError> {
             array => format!("{}: &[f64]", name(array)),
         };
         let parameters: Vec<String> = arrays(program).iter().map(parameter).collect();
-        let (count, body) = (program.outputs.len(), Language::Rust.body(program)?);
+        let (count, body) = (program.outputs.len(), Language::Rust.body(program));
         let _ = write!(
             text,
             "\npub fn {stage}({}) -> [f64; {count}] {{\n    let mut outputs = [0.0; {count}];\n{body}    outputs\n}}\n",
             parameters.join(", ")
         );
     }
-    Ok(text)
+    text
 }
 
-fn has_own_functions(program: &Program) -> bool {
-    let is_own =
-        |operation: &Operation| matches!(operation, Operation::Apply(Function::Stumpff(_) | Function::LogRatio(_), _));
-    program.operations.iter().any(is_own)
+/// The functions of a program that no language has.
+fn own_functions(program: &Program) -> impl Iterator<Item = Function> {
+    program.operations.iter().filter_map(|operation| match operation {
+        Operation::Apply(function @ (Function::Stumpff(_) | Function::LogRatio(_)), _) => Some(*function),
+        _ => None,
+    })
+}
+
+/// The functions of the exponential and the logarithm in C, those that the programs have, with the coefficients of their series.
+fn functions_in_c(programs: &Programs) -> String {
+    let mut used: Vec<Function> =
+        functions(programs).iter().filter_map(|(_, program)| *program).flat_map(own_functions).collect();
+    used.sort_unstable();
+    used.dedup();
+    if used.is_empty() {
+        return String::new();
+    }
+    let of = |is: fn(&Function) -> bool, text| if used.iter().any(is) { text } else { "" };
+    let mut text = [
+        POLYNOMIAL,
+        of(|function| matches!(function, Function::Stumpff(_)), STUMPFF),
+        of(|function| matches!(function, Function::LogRatio(_)), LOG_RATIO),
+    ]
+    .concat();
+    for function in used {
+        let (name, k, series) = match function {
+            Function::Stumpff(k) => ("stumpff", k, stumpff_series(k.into())),
+            Function::LogRatio(k) => ("log_ratio", k, log_ratio_series(k.into())),
+            _ => continue,
+        };
+        let series: Vec<String> = series.iter().map(|coefficient| format!("{coefficient:?}")).collect();
+        let _ = write!(text, "\nstatic const double {name}_{k}[] = {{{}}};\n", series.join(", "));
+    }
+    text + "\n"
 }
 
 /// A step as C99 that needs nothing but `math.h`, on any group: with `-ffp-contract=off` it has the bits of the whole step by
@@ -139,8 +166,7 @@ fn has_own_functions(program: &Program) -> bool {
 ///
 /// # Errors
 ///
-/// [`LateError::Step`]: there is no step as programs, as of a force alone; [`LateError::Function`]: it needs functions that C
-/// doesn't have.
+/// [`LateError::Step`]: there is no step as programs, as of a force alone.
 pub fn c(declaration: &Declaration) -> Result<String, LateError> {
     let step = WholeStep::of(declaration)?;
     let mut text = HEAD.replace("NAME", &declaration.name).replace("GROUP", &declaration.group());
@@ -170,8 +196,9 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
     let arrays: Vec<String> =
         Array::ALL.iter().filter(|&&array| array != Array::Step).map(|&array| format!("*{}", name(array))).collect();
     let _ = writeln!(text, "typedef struct {{\n    double h;\n    const double {};\n}} Inputs;\n", arrays.join(", "));
+    text += &functions_in_c(programs);
     for (name, program) in functions(programs) {
-        let body = program.map_or(Ok(String::new()), |program| Language::C.body(program))?;
+        let body = program.map_or(String::new(), |program| Language::C.body(program));
         let _ = writeln!(
             text,
             "static void {name}(const Inputs *in, double *outputs) {{\n    (void)in, (void)outputs;\n{body}}}\n"
@@ -209,4 +236,7 @@ fn functions(programs: &Programs) -> [(&'static str, Option<&Program>); 10] {
 }
 
 const HEAD: &str = include_str!("head.c");
+const POLYNOMIAL: &str = include_str!("functions.c");
+const STUMPFF: &str = include_str!("stumpff.c");
+const LOG_RATIO: &str = include_str!("log_ratio.c");
 const STEP: &str = include_str!("step.c");

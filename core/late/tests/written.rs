@@ -47,6 +47,22 @@ struct ExtendedPose {
     J: SMatrix<f64, 5, 5>,
 }
 
+/// A top whose centre of mass is turned in it, by a constant rotation vector and by one along the vertical.
+#[lagrangian(
+    group = SO3,
+    advected(w = up),
+    l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)
+        - h * (w.dot(&(exp(v) * rho)) + w.dot(&(exp(c * w) * rho)))
+)]
+#[derive(Clone, Copy, Debug)]
+struct TurnedTop {
+    J_d: NonstandardInertia,
+    v: Vector3<f64>,
+    c: f64,
+    rho: Vector3<f64>,
+    up: Vector3<f64>,
+}
+
 fn list(numbers: impl IntoIterator<Item = f64>) -> String {
     let numbers: Vec<String> = numbers.into_iter().map(|number| format!("{number:?}")).collect();
     format!("{{{}}}", numbers.join(", "))
@@ -174,10 +190,36 @@ fn what_has_no_step_in_c_is_told() {
     for text in [liestep::effects::Gravity::<f64>::DECLARATION, liestep::effects::Drag::<f64>::DECLARATION] {
         assert!(matches!(refused(text), Some(LateError::Step(StepRefusal::NoKinetic))), "{text}");
     }
-    // The expressions contain the functions of the logarithm.
-    for text in [LogTop::DECLARATION, SixthOrderTop::DECLARATION] {
-        assert!(matches!(refused(text), Some(LateError::Function(_))), "{text}");
+}
+
+/// The logarithm and the exponential are functions of their own in C, by their series and beyond.
+#[test]
+fn so_have_logarithms_and_exponentials() {
+    if !is_there("cc") {
+        return;
     }
+    let J = Matrix3::new(3.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 2.0);
+    let J = liestep::mechanics::Inertia::new(J).expect("an inertia");
+    let attitude = SO3::exp(Vector3::new(0.3, -0.5, 0.2));
+    let log = LogTop { J, weight: 15.0, rho: Vector3::new(0.1, -0.2, 0.4), up: Vector3::z() };
+    let text = c(parsed(LogTop::DECLARATION)).expect("a step in C");
+    // Steps of .1, .8 and 1.5 rad: short, longer and closed forms.
+    for faster in [1.0, 8.0, 15.0] {
+        let velocity = [2.0 * faster, 4.0 * faster, 9.0 * faster];
+        assert!(has_the_bits_of(&log, attitude, &velocity, 1_000, &text), "{faster}");
+    }
+    let text = c(parsed(TurnedTop::DECLARATION)).expect("a step in C");
+    let turned = |length: f64| {
+        let (v, J_d) = (Vector3::new(0.6, -0.48, 0.64) * length, *top().J_d.as_matrix());
+        let J_d = NonstandardInertia::new(J_d).expect("an inertia");
+        TurnedTop { J_d, v, c: length, rho: Vector3::new(0.1, -0.2, 0.4), up: Vector3::z() }
+    };
+    // Squares of 0.25, 4 and 16.
+    for length in [0.5, 2.0, 4.0] {
+        assert!(has_the_bits_of(&turned(length), attitude, &[0.7, -1.1, 4.0], 1_000, &text), "{length}");
+    }
+    let wrong = text.replace("(reciprocal - lower[i % 2]) / q", "(reciprocal + lower[i % 2]) / q");
+    assert!(!has_the_bits_of(&turned(4.0), attitude, &[0.7, -1.1, 4.0], 1_000, &wrong));
 }
 
 /// Rust text is formatted, and complete.
@@ -191,7 +233,7 @@ fn rust_is_formatted() {
         [("full", FullTop::DECLARATION), ("log", LogTop::DECLARATION), ("cayley", CayleyTop::DECLARATION)]
     {
         let file = folder.join(format!("{name}.rs"));
-        fs::write(&file, rust(parsed(text)).expect("Rust")).expect("a file");
+        fs::write(&file, rust(parsed(text))).expect("a file");
         let checked =
             Command::new("rustfmt").args(["--edition", "2024", "--check"]).arg(&file).output().expect("it runs");
         assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stdout));

@@ -75,9 +75,8 @@ impl Task {
                 false
             })
         };
-        let force = |step: usize, axis: usize| {
-            self.forces.get(step * self.axes.len() + axis).copied().unwrap_or([f64::NAN; 3])
-        };
+        let force =
+            |step: usize, axis: usize| self.forces.get(step * self.axes.len() + axis).copied().unwrap_or([f64::NAN; 3]);
         let (time, effort) = if self.is_shortest { (1.0, 0.0) } else { (0.0, 1.0) };
         let control = Control::new(&stepper, at(&self.start)?, self.steps, target)
             .input(stepper.force(), self.axes.iter().copied())

@@ -107,6 +107,12 @@ impl Scene {
         self.0.is_self_adjoint()
     }
 
+    /// A step in C99.
+    #[getter]
+    fn c(&self) -> PyResult<String> {
+        Ok(self.0.c()?)
+    }
+
     #[allow(clippy::needless_pass_by_value)]
     fn check(&self, h: f64, how: Names) -> PyResult<()> {
         Ok(self.0.stepper((method(&how)?, h)).map(drop)?)

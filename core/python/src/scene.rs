@@ -43,6 +43,11 @@ impl Scene {
         self.declaration.is_self_adjoint
     }
 
+    /// A step in C99.
+    pub(crate) fn c(&self) -> Result<String, Failure> {
+        Ok(liestep_late::c(self.declaration)?)
+    }
+
     /// The run by a method and a step.
     pub(crate) fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<RunRecord, Failure> {
         let stepper = self.stepper(method)?;

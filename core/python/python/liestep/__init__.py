@@ -11,7 +11,7 @@ True
 
 from . import errors
 from ._control import Control, Plan
-from ._declared import point
+from ._declared import contravariant, covariant, mixed, point
 from ._ensemble import Ensemble, Many, Spread, normal, rotation, uniform
 from ._library import (
     body, dipole, drag, gravity, gravity_gradient, magnetic_damping, nonstandard, rotor, spring, thrust, torque,
@@ -25,7 +25,7 @@ __version__ = "0.1.0"
 __all__ = [
     "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Plan", "Run", "Scene",
     "SceneError", "SceneRun",
-    "SetupError", "Spread", "StepError", "Stepper", "StoreError", "Term", "body", "dipole", "drag", "errors", "euler",
-    "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "nonstandard", "normal", "point", "rotation",
-    "rotor", "scene", "schemes", "spring", "thrust", "torque", "translation", "uniform",
+    "SetupError", "Spread", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
+    "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "mixed",
+    "nonstandard", "normal", "point", "rotation", "rotor", "scene", "schemes", "spring", "thrust", "torque", "translation", "uniform",
 ]

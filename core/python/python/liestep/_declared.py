@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from . import _native
 from ._arrays import floats
 from .errors import DeclarationError
+
+if TYPE_CHECKING:
+    from ._arrays import Array
 
 #: A parameter: its type in the text, and its numbers, those of a matrix row by row.
 Value = tuple[str, tuple[float, ...]]
@@ -16,32 +19,76 @@ Group = str | Mapping[str, str]
 
 
 @dataclass(frozen=True)
-class Point:
-    """A point fixed in space, made by `point`."""
+class Carried:
+    """A value that a group carries otherwise than a covector, made by `point`, `contravariant`, `covariant` or `mixed`."""
 
-    coordinates: tuple[float, ...]
+    #: Its type in the text.
+    kind: str
+    numbers: tuple[float, ...]
 
 
-def point(coordinates: Any) -> Point:
+def _carried(kind: str, value: Any, dimensions: tuple[int, ...], is_said: str) -> Carried:
+    array = floats(kind, value, DeclarationError)
+    if array.ndim not in dimensions or array.size == 0 or len(set(array.shape)) > 1:
+        raise DeclarationError(f"{is_said}, not the shape {array.shape}")
+    rows = array.shape[0]
+    name = {"point": f"Point{rows}<f64>"}.get(kind, f"{kind.capitalize()}{'Vector' if array.ndim == 1 else 'Tensor'}<f64, {rows}>")
+    return Carried(name, tuple(array.ravel().tolist()))
+
+
+def point(coordinates: Any) -> Carried:
     """A point fixed in space, on a group of affine maps: where `advected` a vector would be a direction.
 
     Examples
     --------
     >>> import liestep as ls
-    >>> ls.point([1, 2, 3]).coordinates
+    >>> ls.point([1, 2, 3]).numbers
     (1.0, 2.0, 3.0)
     """
-    array = floats("coordinates", coordinates, DeclarationError)
-    if array.ndim != 1 or not 0 < array.size < 4:
-        raise DeclarationError(f"a point has one to three coordinates, not the shape {array.shape}")
-    return Point(tuple(array.tolist()))
+    carried = _carried("point", coordinates, (1,), "a point has one to three coordinates")
+    if len(carried.numbers) > 3:
+        raise DeclarationError(f"a point has one to three coordinates, not {len(carried.numbers)}")
+    return carried
+
+
+def contravariant(value: Any) -> Carried:
+    """A vector that the group's matrices carry, ``g⁻¹ a`` as the body sees it, or a tensor, ``g⁻¹ A g⁻ᵀ``.
+
+    Parameters
+    ----------
+    value : array_like
+        A vector, or a square matrix.
+    """
+    return _carried("contravariant", value, (1, 2), "what is contravariant is a vector or a square matrix")
+
+
+def covariant(value: Any) -> Carried:
+    """A tensor ``A`` that the body sees as ``gᵀ A g``: a metric of space.
+
+    Parameters
+    ----------
+    value : array_like
+        A square matrix.
+    """
+    return _carried("covariant", value, (2,), "a covariant tensor is a square matrix")
+
+
+def mixed(value: Any) -> Carried:
+    """A tensor ``A`` that the body sees as ``g⁻¹ A g``: a linear map of space.
+
+    Parameters
+    ----------
+    value : array_like
+        A square matrix.
+    """
+    return _carried("mixed", value, (2,), "a mixed tensor is a square matrix")
 
 
 def _value(name: str, value: Any) -> Value:
     import numpy as np
 
-    if isinstance(value, Point):
-        return f"Point{len(value.coordinates)}<f64>", value.coordinates
+    if isinstance(value, Carried):
+        return value.kind, value.numbers
     array = floats(name, value, DeclarationError)
     numbers = tuple(array.ravel().tolist())
     # As the letters of the field have it.
@@ -166,6 +213,30 @@ class Sum:
     def latex(self) -> str:
         """The equations as LaTeX, an ``align*`` for each summand."""
         return "\n".join(summand.derived().latex for summand in self.summands)
+
+    @property
+    def c(self) -> str:
+        """A step of the sum as C99 without dependencies: the bits of `Term.stepper`'s own step, where contraction is off.
+
+        Its head says the order of the parameters, and what the functions do.
+
+        Raises
+        ------
+        DeclarationError
+            The sum has no kinetic energy.
+
+        Examples
+        --------
+        >>> import liestep as ls
+        >>> "int liestep_step(const Stepper *stepper, State *state)" in ls.body([1, 2, 2.5]).c
+        True
+        """
+        return self._scene().c
+
+    @property
+    def numbers(self) -> Array:
+        """The numbers of all parameters, in the order of the C text."""
+        return floats("numbers", [number for _, numbers in self._terms() for number in numbers], DeclarationError)
 
     def _terms(self) -> list[tuple[_native.Derivation, list[float]]]:
         return [

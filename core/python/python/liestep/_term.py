@@ -164,7 +164,8 @@ def lagrangian(
         On SO(3) the pace ``s`` of a transformed time, ``dt = s dτ``, a function of what is advected, three vectors at most:
         the step is one of ``τ``, and runs are in seconds.
     **parameters
-        Numbers, vectors, square matrices and points (`liestep.point`) by their names. Names that begin with ``J`` are inertias, kg m², given by a
+        Numbers, vectors, square matrices, and what is carried otherwise than a covector (`liestep.point`, `contravariant`,
+        `covariant`, `mixed`), by their names. Names that begin with ``J`` are inertias, kg m², given by a
         matrix or by three moments; those that end in ``_d`` nonstandard ones.
 
     Returns

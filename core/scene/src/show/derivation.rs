@@ -61,7 +61,7 @@ impl Form {
     fn of(self, declaration: &Declaration) -> Result<String, LateError> {
         match self {
             Self::Latex => Ok(liestep_late::latex(declaration)),
-            Self::Rust => liestep_late::rust(declaration),
+            Self::Rust => Ok(liestep_late::rust(declaration)),
             Self::C => liestep_late::c(declaration),
         }
     }

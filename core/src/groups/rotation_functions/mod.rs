@@ -85,6 +85,18 @@ pub fn log_ratio<T: Real, const K: usize>(n: T) -> T {
     series.select(near, value)
 }
 
+/// The coefficients of the longest series of `c_k(q)`, of which the shorter ones are the first, for texts in other languages.
+#[must_use]
+pub const fn stumpff_series(k: usize) -> [f64; MANY] {
+    Series::stumpff(k)
+}
+
+/// The coefficients of the longest series of `G⁽ᵏ⁾(n)`, of which the shorter ones are the first.
+#[must_use]
+pub const fn log_ratio_series(k: usize) -> [f64; MANY] {
+    Series::log_ratio(k)
+}
+
 /// The rotation vector `ξ` of `F = exp(ξ̂)`, rad.
 #[inline]
 pub fn rotation_log<T: Real>(rotation: Matrix3<T>) -> Vector3<T> {
