@@ -144,6 +144,22 @@ fn bodies_with_cleared_denominators_are_coupled() {
     assert_step(&(coupling + Each::<3>::of([body])), &[1e-3, 0.1], 8);
 }
 
+/// Bodies with different denominators of their Newton systems, and a term with more, add in any order.
+#[test]
+fn bodies_with_different_denominators_add() {
+    fn end<L: Regular<Scalar = f64, Group = [SO3; 2]>>(scene: L) -> Bodies<Vector3<f64>, 2> {
+        let stepper = Stepper::new(scene, 0.1).unwrap();
+        let velocity = Bodies([Vector3::new(0.3, 0.2, 1.0), Vector3::new(-0.5, 0.4, 0.1)]);
+        let mut state = stepper.start([SO3::identity(), SO3::exp(Vector3::y() * 0.5)], velocity).unwrap();
+        stepper.run(&mut state, 5).unwrap();
+        state.momentum()
+    }
+    let (body, J, quartic) = (rigid([3.0, 2.5, 2.0]), inertia([1.1, 0.9, 0.5]), Each::<2>::of([Quartic { m: 0.4 }]));
+    let (one, other) = (On::<0, 2>::of([body]), On::<1, 2>::of([GeodesicBody { J }]));
+    let found = [end(one + other + quartic), end(quartic + other + one), end(other + quartic + one)];
+    assert!(found.iter().all(|end| norm(&(*end - found[0])) < 1e-13), "{found:?}");
+}
+
 /// A body that turns along geodesics and is translated.
 #[lagrangian(
     group(F = SO3, d = R3),

@@ -197,6 +197,7 @@ impl Declaration {
     }
 
     /// Checks the numbers of all parameters.
+    #[allow(clippy::float_cmp)] // a tensor is symmetric to the bit
     pub(crate) fn check(&'static self, numbers: &[f64]) -> Result<(), SetupError> {
         for (index, parameter) in self.parameters.iter().enumerate() {
             let (start, length) = self.place(index);

@@ -18,9 +18,7 @@ use liestep::gradients::Input;
 use liestep::groups::{CayleyRetraction, CovariantTensor, LieGroup as _, Retraction, SE23};
 use liestep::lagrangian;
 use liestep::laws::samples::Random;
-use liestep::mechanics::{
-    DiagonalNonstandardInertia, Effect, Inertia, Regular, SecondDerivatives, Term as _, Vector,
-};
+use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, Regular, SecondDerivatives, Vector};
 use liestep::motion::Propagator as _;
 use liestep::with::Method;
 use liestep::{NonstandardInertia, SO3, Stepper};

@@ -15,7 +15,7 @@ use liestep::methods::CompositionScheme;
 use liestep::motion::{AnyStepper, Integrator as _, Propagator as _, Remedy};
 use liestep::with::Method;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
-use liestep_late::{Declaration, LateError, Whole, WholeError, numbers};
+use liestep_late::{Declaration, LateError, Whole, WholeError};
 use nalgebra::Vector3;
 
 type Generators = Vec<Vec<f64>>;
