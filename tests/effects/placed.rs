@@ -5,7 +5,7 @@ use checks::structure::{System, norm};
 use declarations::{Alike, FloatingBody};
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, RigidBody, SixthOrderBody};
 use liestep::groups::R3;
-use liestep::mechanics::{Between, Coupling, Each, Inertia, On, Regular};
+use liestep::mechanics::{Between, Coupling, Each, Effect as _, Inertia, On, Regular};
 use liestep::methods::{Joint, Multibody, MultibodyStepper};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};

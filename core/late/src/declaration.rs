@@ -65,7 +65,7 @@ const MOST: usize = 10_000;
 static KEPT: LazyLock<Mutex<BTreeMap<String, &'static Declaration>>> = LazyLock::new(Mutex::default);
 
 /// The number of stored declarations, sums among them. A text is derived and stored once, however often it is declared, and
-/// a sum once for each order of its terms; a process may store 10,000. One of a body takes 43 kB, which the ignored test in
+/// a sum once for each order of its terms; a process may store 10,000. One of a body takes 25 kB, which the ignored test in
 /// `core/late/tests/hostile.rs` measures.
 #[must_use]
 pub fn kept() -> usize {
