@@ -136,7 +136,7 @@ struct SquaredPotential {
 /// Bodies whose Newton systems have cleared denominators are coupled in a row that is solved together.
 #[test]
 fn bodies_with_cleared_denominators_are_coupled() {
-    const { assert!(RigidBody::<f64>::DENOMINATORS == 1 && GeodesicBody::<f64>::DENOMINATORS == 0) };
+    const { assert!(RigidBody::<f64>::FACTS.denominators == 1 && GeodesicBody::<f64>::FACTS.denominators == 0) };
     let (body, J) = (rigid([3.0, 2.5, 2.0]), inertia([1.1, 0.9, 0.5]));
     let coupling = Coupling::<3>::of([SquaredPotential { k: 20.0 }]);
     let ends = On::<0, 3>::of([body]) + On::<2, 3>::of([body]);

@@ -7,7 +7,6 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use liestep::SetupError;
 use liestep::mechanics::Parts;
-use liestep::numbers::Blocks;
 use liestep_derivation::{MOST_WORK, ParameterKind, Program, Refusal, StagedDeclaration, Stages, staged};
 use proc_macro2::{LexError, TokenStream};
 
@@ -20,7 +19,6 @@ use crate::sum::summed;
 pub struct Declaration {
     staged: StagedDeclaration,
     pub(crate) parts: Parts,
-    pub(crate) apart: Blocks,
     /// The code of the programs by each back end.
     made: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
 }
@@ -165,8 +163,7 @@ impl Declaration {
 
     fn of(staged: StagedDeclaration) -> Self {
         let [unknown, kick_before, kick_after] = staged.parts;
-        let apart = staged.blocks.iter().fold(Blocks::WHOLE, |blocks, &end| blocks.then(end, Blocks::WHOLE));
-        Self { parts: Parts { unknown, kick_before, kick_after }, apart, made: Mutex::default(), staged }
+        Self { parts: Parts { unknown, kick_before, kick_after }, made: Mutex::default(), staged }
     }
 
     /// The code that is made of the declaration, made once.
