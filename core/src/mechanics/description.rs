@@ -1,10 +1,5 @@
 //! Descriptions of scenes, by which they are distinguished.
 
-use alloc::string::String;
-use alloc::vec::Vec;
-
-use crate::mechanics::effect::Effect;
-
 /// The visitor of a scene's description, for [`Effect::describe`](crate::mechanics::Effect::describe).
 pub trait SceneVisitor<T> {
     /// The beginning of a term, by the text of its [`DERIVATION`](crate::mechanics::Effect::DERIVATION).
@@ -12,24 +7,4 @@ pub trait SceneVisitor<T> {
 
     /// A scalar of a field, which belongs to the term begun last.
     fn parameter(&mut self, field: &'static str, value: T);
-}
-
-/// The derivation of an effect, and of a sum those of all its terms, each once: constants can't be concatenated.
-#[must_use]
-pub fn derivation<E: Effect>(effect: &E) -> String {
-    let mut texts = Texts(Vec::new());
-    effect.describe(&mut texts);
-    texts.0.join("\n")
-}
-
-struct Texts(Vec<&'static str>);
-
-impl<T> SceneVisitor<T> for Texts {
-    fn term(&mut self, derivation: &'static str) {
-        if !self.0.contains(&derivation) {
-            self.0.push(derivation);
-        }
-    }
-
-    fn parameter(&mut self, _: &'static str, _: T) {}
 }

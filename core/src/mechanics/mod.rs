@@ -6,6 +6,7 @@
 //! here except that of the inverse Legendre transform.
 
 mod continuous;
+mod derivation;
 mod description;
 mod direction;
 mod effect;
@@ -24,7 +25,8 @@ mod term;
 mod velocity;
 
 pub use continuous::{ContinuousLagrangian, Legendre};
-pub use description::{SceneVisitor, derivation};
+pub use derivation::derivation;
+pub use description::SceneVisitor;
 pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Regular, Scalar, Square, Vector};
 pub(crate) use effect::{pattern, update_of};
 pub use facts::{Facts, Parts};
