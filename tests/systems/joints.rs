@@ -380,7 +380,7 @@ fn a_parallelogram_passes_its_change_point() {
     let moments = [0.083_333_3, 4.208_333_3, 4.208_333_3];
     let rod = FallingBody { m: 50.0, J_d: inertia(moments), g: 9.8105, up: -down };
     let [half, zero] = [Vector3::x() * 0.5, Vector3::zeros()];
-    let passed = |h: f64, steps: u64| {
+    let passed = |h: f64, steps: u32| {
         let mut system = Multibody::new();
         let [crank, coupler, follower] = [0; 3].map(|_| system.body(rod));
         let mut pin = |points, above, below| system.join(Joint::pin(points, [Vector3::z(); 2]), above, below);
@@ -401,7 +401,7 @@ fn a_parallelogram_passes_its_change_point() {
             let [x, y] = [0, 1].map(|k| position(&stepper, &state, crank)[k]);
             let (angle, rate) = (y.atan2(x), stepper.velocity(&state, crank)[2]);
             if before > 0.0 && angle <= 0.0 {
-                flat = Some((h * (step + 1) as f64 - angle / rate, rate));
+                flat = Some((h * f64::from(step + 1) - angle / rate, rate));
             }
             before = angle;
         }

@@ -1,5 +1,7 @@
 //! Joints in files: bodies that joints place, kinds with their friction, springs and motors, and mistakes with their places.
 
+use std::fmt::Write as _;
+
 use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 use liestep::mechanics::Effect as _;
 use liestep_scene::{Run, Scene, System};
@@ -178,7 +180,7 @@ fn a_composition_is_of_order_four() {
     let text = text
         .replace("at = [[0, 0, 0.5], [1, 0, 0]]\naxes = [[0, 1, 0], [0, 1, 0]]\n", "at = [[0, 0, 0.5], [1, 0.5, 0]]\n");
     let ball = "kind = \"ball\"\nbodies = [\"right\", \"seat\"]\nat = [[0, 0, -0.5], [0.5, 0, 0]]\n";
-    let text = text.replace(&format!("kind = \"pin\"\nbodies = [\"right\", \"seat\"]\nat = [[0, 0, -0.5], [0.5, 0, 0]]\naxes = [[0, 1, 0], [0, 1, 0]]\nrate = -2\n"), ball);
+    let text = text.replace("kind = \"pin\"\nbodies = [\"right\", \"seat\"]\nat = [[0, 0, -0.5], [0.5, 0, 0]]\naxes = [[0, 1, 0], [0, 1, 0]]\nrate = -2\n", ball);
     let by = |method: &str, step: &str| {
         let text = text.replace("step = \"1 ms\"", &format!("step = {step}\n{method}"));
         let run = run(&text);
@@ -219,11 +221,12 @@ fn a_composition_is_of_order_four() {
 fn a_thousand_bodies() {
     let mut text = "title = \"row\"\ngravity = { g = 9.81, up = [0, 0, 1] }\n".to_owned();
     for k in 0..1000 {
-        text += &format!("[[body]]\nname = \"b{k}\"\nm = 0.1\ncylinder = {{ radius = 0.01, length = 0.1 }}\n");
+        let _ = write!(text, "[[body]]\nname = \"b{k}\"\nm = 0.1\ncylinder = {{ radius = 0.01, length = 0.1 }}\n");
     }
     for k in 0..1000 {
         let (above, at) = if k == 0 { ("space".to_owned(), 0.0) } else { (format!("b{}", k - 1), -0.05) };
-        text += &format!(
+        let _ = write!(
+            text,
             "[[joint]]\nkind = \"pin\"\nbodies = [\"{above}\", \"b{k}\"]\nat = [[0, 0, {at}], [0, 0, 0.05]]\n\
              axes = [[0, 1, 0], [0, 1, 0]]\nangle = 0.01\ndamping = 1e-4\n"
         );

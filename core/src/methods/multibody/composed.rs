@@ -115,7 +115,9 @@ impl MultibodyStepper {
             of_stage.extend_from_slice(&whole[..head]);
             of_stage.extend_from_slice(&whole[memory.clone()]);
             of_stage.push(steps);
-            of_step.iter_mut().for_each(|all| all.fill(Vector6::zeros()));
+            if let Some(all) = &mut of_step {
+                all.fill(Vector6::zeros());
+            }
             let report = stepper.step_in(&mut of_stage, work, of_step.as_deref_mut(), false)?;
             for (force, part) in forces.iter_mut().flat_map(|all| all.iter_mut()).zip(of_step.iter().flatten()) {
                 *force += part * *gamma;
