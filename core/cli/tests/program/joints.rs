@@ -372,17 +372,54 @@ fn bodies_by_their_shapes() {
     assert!(refused.contains("singular"), "{refused}");
 }
 
+/// The message about the swing with a part of its text in the place of another.
+fn change(from: &str, to: &str) -> String {
+    message(&SWING.replacen(from, to, 1))
+}
+
+/// The message about the swing with a first joint of another kind, and these keys.
+fn kind(kind: &str, keys: &str) -> String {
+    let first = "kind = \"pin\"\nbodies = [\"space\", \"left\"]\nat = [[0, 0, 0], [0, 0, 0.5]]\n";
+    change(&format!("{first}axes = [[0, 1, 0], [0, 1, 0]]\nrate = 2"), &format!("{}{keys}", first.replace("pin", kind)))
+}
+
+/// Mistakes of limits, shapes and events have one message each at their places.
+#[test]
+fn mistakes_of_limits_shapes_and_events() {
+    let cases = [
+        (
+            kind("pin", "axes = [[0, 1, 0], [0, 1, 0]]\nlimits = { from = 1, to = -1 }"),
+            "20:10: a joint moves `from` one place `to` a greater one",
+        ),
+        (
+            kind("pin", "axes = [[0, 1, 0], [0, 1, 0]]\nlimits = { from = -4, to = 4 }"),
+            "20:10: these limits are a turn apart or more, so that none is reached: leave them out",
+        ),
+        (
+            kind("ball", "limits = { from = -1, to = 1 }"),
+            "19:10: a ball joint has no `limits`: those of a pin and a slider are watched",
+        ),
+        (
+            change("m = 1", "m = 1\ndensity = 1"),
+            "3:1: a body has a mass `m`, or a `density` with one of `box`, `cylinder`, `capsule`, `sphere`",
+        ),
+        (
+            change("m = 1", "m = 1\nsphere = { radius = 1 }\nbox = [1, 1, 1]"),
+            "3:1: a body has one of `box`, `cylinder`, `capsule`, `sphere`",
+        ),
+        (
+            change("[run]", "[[event]]\nname = \"a\"\ntilt = 0\n[run]"),
+            "38:1: only a single body has this quantity: of several an event has a `column` with a `value`, or an `energy`",
+        ),
+    ];
+    for (found, expected) in &cases {
+        assert_eq!(found, &format!("joints.toml:{expected}"));
+    }
+}
+
 /// Each mistake has one message at its place.
 #[test]
 fn mistakes() {
-    let change = |from: &str, to: &str| message(&SWING.replacen(from, to, 1));
-    let first = "kind = \"pin\"\nbodies = [\"space\", \"left\"]\nat = [[0, 0, 0], [0, 0, 0.5]]\n";
-    let kind = |kind: &str, keys: &str| {
-        change(
-            &format!("{first}axes = [[0, 1, 0], [0, 1, 0]]\nrate = 2"),
-            &format!("{}{keys}", first.replace("pin", kind)),
-        )
-    };
     let cases = [
         (kind("weld", "rate = 1"), "19:8: a weld has no `rate`"),
         (
@@ -434,30 +471,6 @@ fn mistakes() {
         (
             change("rate = 2", "rate = 2\n[[body]]\nname = \"lost\"\nm = 1\nmoments = [1, 1, 1]"),
             "22:8: `lost` has no place: give its `position` and `start`, or a joint with a body that has one, or with `space`",
-        ),
-        (
-            kind("pin", "axes = [[0, 1, 0], [0, 1, 0]]\nlimits = { from = 1, to = -1 }"),
-            "20:10: a joint moves `from` one place `to` a greater one",
-        ),
-        (
-            kind("pin", "axes = [[0, 1, 0], [0, 1, 0]]\nlimits = { from = -4, to = 4 }"),
-            "20:10: these limits are a turn apart or more, so that none is reached: leave them out",
-        ),
-        (
-            kind("ball", "limits = { from = -1, to = 1 }"),
-            "19:10: a ball joint has no `limits`: those of a pin and a slider are watched",
-        ),
-        (
-            change("m = 1", "m = 1\ndensity = 1"),
-            "3:1: a body has a mass `m`, or a `density` with one of `box`, `cylinder`, `capsule`, `sphere`",
-        ),
-        (
-            change("m = 1", "m = 1\nsphere = { radius = 1 }\nbox = [1, 1, 1]"),
-            "3:1: a body has one of `box`, `cylinder`, `capsule`, `sphere`",
-        ),
-        (
-            change("[run]", "[[event]]\nname = \"a\"\ntilt = 0\n[run]"),
-            "38:1: only a single body has this quantity: of several an event has a `column` with a `value`, or an `energy`",
         ),
         (
             change("axes = [[0, 1, 0], [0, 1, 0]]\n[run]", "axes = [[0, 1, 0], [0, 1, 0]]\nangle = 0\n[run]"),

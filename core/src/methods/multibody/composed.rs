@@ -10,24 +10,11 @@ use alloc::vec::Vec;
 use nalgebra::Vector6;
 
 use super::state::{Offsets, layout};
-use super::stepper::MultibodyStepper;
+use super::stepper::{MultibodyStepper, Stages};
 use super::workspace::Workspace;
 use crate::error::{SetupError, StepError};
 use crate::methods::CompositionScheme;
 use crate::motion::StepReport;
-
-/// The stages of a composition, each with its share of the step.
-pub(super) struct Stages {
-    pub(super) scheme: CompositionScheme,
-    pub(super) steppers: Vec<(f64, MultibodyStepper)>,
-}
-
-impl Stages {
-    /// The shares of the stages.
-    pub(super) fn gammas(&self) -> impl Iterator<Item = f64> + '_ {
-        self.steppers.iter().map(|(gamma, _)| *gamma)
-    }
-}
 
 /// The largest change of a state by a step and one back, relative to the state. Rounding makes some `1e-13` of it; a step that is
 /// of first order at one of its ends makes `h²`.

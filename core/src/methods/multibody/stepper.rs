@@ -9,7 +9,6 @@ use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 roots!();
 
-use super::composed::Stages;
 use super::constraint::Place;
 use super::couplings::{Coupling, couplings};
 use super::equations::{gap, gap_of_all};
@@ -22,6 +21,7 @@ use super::workspace::with_workspace;
 use super::{Body, parts, place};
 use crate::error::{SetupError, StepError};
 use crate::mechanics::SceneVisitor;
+use crate::methods::CompositionScheme;
 use crate::motion::Layout;
 
 /// The stepper of a [`Multibody`] system: a [`Propagator`](crate::motion::Propagator) whose states are slices of numbers.
@@ -65,6 +65,19 @@ pub struct MultibodyStepper {
     pub(super) stages: Option<Arc<Stages>>,
     pub(super) layout: Layout,
     pub(super) offsets: Offsets,
+}
+
+/// The stages of a composition, each with its share of the step.
+pub(super) struct Stages {
+    pub(super) scheme: CompositionScheme,
+    pub(super) steppers: Vec<(f64, MultibodyStepper)>,
+}
+
+impl Stages {
+    /// The shares of the stages.
+    pub(super) fn gammas(&self) -> impl Iterator<Item = f64> + '_ {
+        self.steppers.iter().map(|(gamma, _)| *gamma)
+    }
 }
 
 impl core::fmt::Debug for MultibodyStepper {
