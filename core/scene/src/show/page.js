@@ -132,7 +132,7 @@ const view = canvasIn(document.getElementById("view"), (pen, width, height) => {
   if (!single) return;
   const [sa, ca, se, ce] = [Math.sin(camera.azimuth), Math.cos(camera.azimuth), Math.sin(camera.elevation), Math.cos(camera.elevation)];
   const right = [-sa, ca, 0], up = [-se * ca, -se * sa, ce], towards = [ce * ca, ce * sa, se];
-  const size = 0.36 * Math.min(width, height) * camera.zoom, centre = [width / 2, height / 2];
+  const size = (several ? 0.48 : 0.36) * Math.min(width, height) * camera.zoom, centre = [width / 2, height / 2];
   const place = p => [centre[0] + size * dot(right, p), centre[1] - size * dot(up, p)];
   const line = (points, colour, thickness) => {
     pen.beginPath();
