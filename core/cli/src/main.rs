@@ -111,7 +111,11 @@ fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Out
         output.write(&name(path, "html"), &system.page(&run))?;
     }
     notes(&run);
-    print(&(system.summary(&run) + &system.end_error(&run)))
+    print(&(system.summary(&run) + &system.end_error(&run)))?;
+    if let Some(sweep) = system.sweep() {
+        eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points.len());
+    }
+    Ok(())
 }
 
 /// Prints remarks about the file.
@@ -189,6 +193,9 @@ fn checked(path: &Path) -> Result<String, Failure> {
             let first = system.first(1)?;
             notes(&first);
             let changes = system.changes(&first);
+            for (_, point) in system.sweep().map(|sweep| sweep.points.as_slice()).unwrap_or_default() {
+                point.first(1)?;
+            }
             return Ok(format!("{}\n{changes}", system.about()));
         }
     };

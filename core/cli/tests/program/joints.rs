@@ -7,6 +7,8 @@ use liestep::mechanics::Effect as _;
 use liestep_scene::{Run, Scene, System};
 use nalgebra::Vector3;
 
+use crate::called::{folder, printed};
+
 fn system(text: &str) -> System {
     match Scene::parse("joints.toml", text).unwrap_or_else(|mistake| panic!("{mistake}")) {
         Scene::System(system) => *system,
@@ -238,6 +240,41 @@ fn a_thousand_bodies() {
     // It falls from rest: the energy is lost by friction alone.
     assert!(energies.windows(2).all(|pair| pair[1] <= pair[0] + 1e-9), "{energies:?}");
     assert!((end(&run, 999) - run.samples()[0].bodies[999].position).norm() > 1e-5);
+}
+
+/// A sweep over keys of bodies, joints and the run: its rows are the ends of the scenes with their values.
+#[test]
+fn a_sweep_of_several_bodies() {
+    let folder = folder("sweep-of-several");
+    let text = SWING.replacen("duration = 1", "duration = 0.1", 1).replacen(
+        "[run]",
+        "[[event]]\nname = \"low\"\ncolumn = \"left_x\"\nvalue = -0.05\n[run]",
+        1,
+    );
+    let sweep = "[sweep]\njoint.joint-1.damping = [0.5, \"2 N m s\"]\nbody.seat.m = { from = 1, to = 3, count = 3 }\n[output]\ncolumns = [\"position\", \"energy\"]\n";
+    std::fs::write(folder.join("swing.toml"), format!("{text}{sweep}")).unwrap();
+    printed(&folder, &["sweep", "swing.toml", "--out", "."]);
+    let table = std::fs::read_to_string(folder.join("swing.sweep.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows[0][..4], ["joint.joint-1.damping", "body.seat.m", "t", "left_x"]);
+    assert_eq!(rows[0][12..], ["energy", "greatest_energy_error", "low_times", "low_first"]);
+    let points: Vec<_> = rows[1..].iter().map(|row| row[..2].join(" ")).collect();
+    assert_eq!(points, ["0.5 1.0", "0.5 2.0", "0.5 3.0", "2 N m s 1.0", "2 N m s 2.0", "2 N m s 3.0"]);
+    let alone = text.replacen("rate = 2\n", "rate = 2\ndamping = 2\n", 1).replacen(
+        "name = \"seat\"\nm = 1",
+        "name = \"seat\"\nm = 3",
+        1,
+    );
+    let run = run(&alone);
+    let last = run.samples().last().unwrap();
+    let found: Vec<f64> = rows[6][2..].iter().map(|cell| cell.parse().unwrap()).collect();
+    let of_bodies = last.bodies.iter().flat_map(|body| &body.position).copied();
+    let expected: Vec<f64> = std::iter::once(last.time).chain(of_bodies).chain([last.energy]).collect();
+    assert_eq!(found[..11], expected[..]);
+    let first_passing = run.happenings()[0].sample.time;
+    assert_eq!(found[12..], [1.0, first_passing]);
+    let wrong = message(&format!("{text}[sweep]\njoint.elbow.damping = [1, 2]\n"));
+    assert_eq!(wrong, "joints.toml:46:7: no `joint` is called `elbow`");
 }
 
 fn free_pin(keys: &str, rest: &str) -> String {

@@ -9,6 +9,7 @@ use liestep::with::Scheme;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
+use toml::de::{DeTable, Deserializer};
 
 use crate::file::column::{Column, Output};
 use crate::file::event::{Event, Quantity};
@@ -21,7 +22,10 @@ use crate::file::placed::place;
 use crate::file::quantity::{
     Acceleration, Direction, Duration, Length, PositiveScalar, Scalar, Stiffness, Triple, round, short,
 };
+use crate::file::scene::Sweep;
 use crate::file::schedule::{equal_steps, fraction};
+use crate::file::sweep;
+use crate::file::tables::Document;
 use crate::file::text::title;
 
 /// Several bodies, with joints and springs between them.
@@ -40,6 +44,7 @@ use crate::file::text::title;
 /// | `run` | `duration`; `step`, of which the duration is a whole number; `method`: `step`, or a `composition` by its name, as for [one body](crate::SceneFile), of systems without friction; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
 /// | `picture` | `plane`: `xy`, `xz`, `yz`; by default the plane in which the motion is the widest |
 /// | `output` | `columns` that follow the time in a table, see [`Column`]; `every`: the number of steps from row to row |
+/// | `sweep` | as for [one body](crate::SceneFile): the key of a body, a joint or an event follows its name, `joint.elbow.damping` or `joint.joint-1.damping` |
 ///
 /// Joints may form loops. Other effects on several bodies need a program: [`liestep::methods::Multibody`].
 #[derive(Clone)]
@@ -58,6 +63,7 @@ pub struct System {
     pub(crate) output: Output,
     pub(crate) columns: Vec<Column>,
     pub(crate) event: Vec<Event>,
+    pub(crate) sweep: Option<Box<Sweep<Self>>>,
     pub(crate) path: PathBuf,
     pub(crate) places: SystemPlaces,
 }
@@ -137,8 +143,22 @@ impl System {
     /// The first [`Mistake`] in it.
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self, Mistake> {
         let path = path.as_ref();
-        let table: SystemTable = toml::from_str(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
+        let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
+        let sweep = document.get_mut().remove("sweep");
         let lines = Lines::of(text);
+        let read = |document: &Document<'_>| Self::of_document(path, (text, &lines), document);
+        let mut system = read(&document)?;
+        if let Some(table) = sweep {
+            let located = |(span, message): SpanMessage| Mistake::at(path, lines.place(span.start), message);
+            system.sweep = Some(Box::new(sweep::read(&document, &table, &located, &read)?));
+        }
+        Ok(system)
+    }
+
+    /// The system of a document without a sweep.
+    fn of_document(path: &Path, (text, lines): (&str, &Lines<'_>), document: &Document<'_>) -> Result<Self, Mistake> {
+        let table = SystemTable::deserialize(Deserializer::from(document.clone()))
+            .map_err(|error| Mistake::of_toml(path, text, &error))?;
         let place = |span: &Range<usize>| lines.place(span.start);
         let places = SystemPlaces {
             bodies: table.body.iter().map(|body| place(&body.span())).collect(),
@@ -147,6 +167,12 @@ impl System {
             pace: place(&table.run.step.span()),
         };
         of_table(table, path, places).map_err(|(span, message)| Mistake::at(path, place(&span), message))
+    }
+
+    /// The scenes of the file's sweep.
+    #[must_use]
+    pub fn sweep(&self) -> Option<&Sweep<Self>> {
+        self.sweep.as_deref()
     }
 
     /// The title of the scene.
@@ -288,6 +314,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         output: table.output,
         columns: Vec::new(),
         event: Vec::new(),
+        sweep: None,
         path: path.to_owned(),
         places,
     };
