@@ -332,8 +332,13 @@ fn limits_and_columns_are_events() {
     // From the other end the angle has the other sign, and so have its limits.
     let turned = "kind = \"pin\"\nbodies = [\"a\", \"space\"]\nat = [[-0.2, 0, 0], [0, 0, 0]]";
     let straight = "kind = \"pin\"\nbodies = [\"space\", \"a\"]\nat = [[0, 0, 0], [-0.2, 0, 0]]";
-    let text = free_pin("rate = -2\nlimits = { from = -1, to = 0.5 }", "").replacen(straight, turned, 1);
-    assert!((run(&text).happenings()[0].sample.time - 0.5).abs() < 1e-5);
+    let columns = "[[event]]\nname = \"right\"\ncolumn = \"joint-1_angle\"\nvalue = -0.5\n";
+    let text = free_pin("rate = -2\nlimits = { from = -1, to = 0.5 }", columns).replacen(straight, turned, 1);
+    let [right, limit] = [0, 1].map(|at| {
+        let run = run(&text);
+        (run.happenings()[at].event, run.happenings()[at].rising, run.happenings()[at].sample.time)
+    });
+    assert!(is_at(&[right, limit], &[(0, false, 0.25), (1, true, 0.5)]), "{right:?} {limit:?}");
     let slider = free_pin("speed = -0.5\nlimits = { from = \"-30 cm\", to = 1, stop = true }", "");
     let slid = run(&slider.replacen("\"pin\"", "\"slider\"", 1));
     assert!((slid.samples().last().unwrap().time - 0.6).abs() < 1e-9);

@@ -28,6 +28,8 @@ pub(crate) struct Joint {
     pub(crate) length: f64,
     pub(crate) terms: Terms,
     pub(crate) limits: Option<Limits>,
+    /// Whether the file has its bodies in the other order.
+    pub(crate) is_swapped: bool,
     /// The start by the coordinates of the joint, of bodies without places of their own.
     pub(crate) start: Coordinates,
 }
@@ -360,7 +362,7 @@ impl JointTable {
         let limits = limits.transpose()?;
         let length = self.length.map_or(0.0, |length| length.into_inner().value);
         let at = self.at.map(|point| point.value);
-        let joint = Joint { kind, at, axes, zero, length, terms, limits, start };
+        let joint = Joint { kind, at, axes, zero, length, terms, limits, is_swapped, start };
         Ok(if is_swapped { joint.swapped() } else { joint })
     }
 }

@@ -67,8 +67,14 @@ fn sample(system: &System, stepper: &MultibodyStepper, now: &Moment<'_, AnyStepp
     numbers.push(*energy);
     numbers.extend(momentum.iter().chain(angular_momentum));
     numbers.push(*gap);
-    let coordinates: Vec<_> =
-        system.joints.iter().map(|joint| (joint.of.kind, coordinates(joint, stepper, now.numbers()))).collect();
+    let coordinates: Vec<_> = system
+        .joints
+        .iter()
+        .map(|joint| {
+            let sign = if joint.of.is_swapped { -1.0 } else { 1.0 };
+            (joint.of.kind, coordinates(joint, stepper, now.numbers()).map(|coordinate| sign * coordinate))
+        })
+        .collect();
     numbers.extend(coordinates.iter().filter(|(kind, _)| kind.turns_about_axis()).map(|(_, [angle, _])| angle));
     numbers.extend(coordinates.iter().filter(|(kind, _)| kind.shifts_along_axis()).map(|(_, [_, shift])| shift));
     if has_reactions {
