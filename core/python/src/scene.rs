@@ -1,7 +1,7 @@
 //! A declaration with numbers as a scene to run, for any group and any advected parameters.
 
 use liestep::accuracy::{Accuracy, Choice};
-use liestep::motion::AnyStepper;
+use liestep::motion::{AnyStepper, Propagator as _};
 use liestep::with::Method;
 use liestep_late::{Declaration, LateError, Question, QuestionError, Role, Whole, WholeError, for_accuracy, stepper};
 
@@ -36,6 +36,12 @@ impl Scene {
             return Err(Failure::Of("SetupError", message.to_owned()));
         }
         Ok(stepper::<Backend>(self.declaration, numbers, h, method)?)
+    }
+
+    /// The numbers of what is carried along, as the body sees them at the attitude of a state.
+    pub(crate) fn seen(&self, state: &[f64]) -> Result<Vec<f64>, Failure> {
+        let whole = Whole::<Backend>::of(self.declaration, &self.numbers, 1.0, Method::default())?;
+        Ok(whole.adopt(state)[whole.layout().advected()].to_vec())
     }
 
     /// Whether a step of `−h` undoes one of `h`, as methods of a higher order require.

@@ -36,6 +36,15 @@ def number(name: str, value: Any) -> float:
     return float(array)
 
 
+def vector(name: str, value: Any) -> list[float]:
+    """A list of real numbers."""
+    array = floats(name, value, SetupError)
+    if array.ndim != 1:
+        raise SetupError(f"`{name}` is a list of numbers, not an array of the shape {array.shape}")
+    numbers: list[float] = array.tolist()
+    return numbers
+
+
 def whole(name: str, value: Any, least: int, most: int) -> int:
     """A whole number between two."""
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:

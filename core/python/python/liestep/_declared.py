@@ -284,18 +284,35 @@ class Sum:
         before += self.summands[place[0]].numbers[: place[1]]
         return sum(len(value) for _, (_, value) in before)
 
-    @property
-    def parameters(self) -> dict[str, Any]:
-        """The parameters by their names."""
+    def _shown(self) -> dict[str, list[Place]]:
+        """The names under which `parameters` has them, in order, and their places."""
         named = self._places()
         several = {name for name, places in named.items() if not self._are_equal(places)}
         shared = {place for name, places in named.items() if len(places) > 1 and name not in several for place in places}
         shown = {
-            name: places[0] for name, places in named.items()
+            name: places for name, places in named.items()
             if name not in several and (len(places) > 1 or places[0] not in shared)
         }
-        ordered = sorted(shown, key=lambda name: shown[name])
-        return {name: _shaped(*self._value(shown[name])) for name in ordered}
+        return {name: shown[name] for name in sorted(shown, key=lambda name: shown[name][0])}
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The parameters by their names."""
+        return {name: _shaped(*self._value(places[0])) for name, places in self._shown().items()}
+
+    def _seen(self, numbers: list[float]) -> dict[str, Any]:
+        """What is carried along by the names of its parameters, from the numbers of all summands."""
+        found: dict[Place, tuple[float, ...]] = {}
+        first = 0
+        for at, summand in enumerate(self.summands):
+            for which, length in summand.derived().carried:
+                if which is not None:
+                    found[at, which] = tuple(numbers[first : first + length])
+                first += length
+        kind = {place: self._value(place)[0] for place in found}
+        return {
+            name: _shaped(kind[places[0]], found[places[0]]) for name, places in self._shown().items() if places[0] in found
+        }
 
     def with_(self: AnySum, **parameters: Any) -> AnySum:
         """The same with other values of parameters.
@@ -342,5 +359,5 @@ def _shaped(kind: str, numbers: tuple[float, ...]) -> Any:
     if kind == "f64":
         return numbers[0]
     rows = round(len(numbers) ** 0.5)
-    is_matrix = "Matrix" in kind or "Inertia" in kind
+    is_matrix = any(word in kind for word in ("Matrix", "Inertia", "Tensor"))
     return np.array(numbers).reshape((rows, rows) if is_matrix else (len(numbers),))

@@ -12,6 +12,7 @@ from . import _native
 from ._arrays import floats, number, whole
 from ._declared import Sum
 from ._run import Run
+from ._state import State
 from .errors import Error, SetupError, StepError
 
 
@@ -276,6 +277,26 @@ class Stepper:
         """
         course = self._course(until, every, times, events)
         return self._made(_start(attitude, velocity), course, list(events or {}))
+
+    def start(self, *, velocity: Any, attitude: Any = None) -> State:
+        """The state at a start, for a loop of your own: ``state.step(torque=…)``.
+
+        Parameters
+        ----------
+        velocity, attitude
+            As of `run`.
+
+        Returns
+        -------
+        State
+        """
+        return State(self, self._native.start(self.step, self.method, _start(attitude, velocity)))
+
+    def _resumed(self, numbers: list[float]) -> _native.State:
+        return self._native.resume(self.step, self.method, numbers)
+
+    def _seen(self, numbers: list[float]) -> dict[str, Any]:
+        return self.term._seen(numbers)
 
     def _course(self, until: Any, every: Any, times: Any, events: Any) -> _Course:
         are_equal = self.method[0] != "density" and not self.term.has_pace

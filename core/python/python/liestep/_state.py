@@ -1,0 +1,149 @@
+"""States: motions that are stepped one by one, with torques in between."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+from . import _native
+from ._arrays import whole
+
+if TYPE_CHECKING:
+    from ._arrays import Array
+
+
+class Origin(Protocol):
+    """What a state is of: a stepper, or a scene's file."""
+
+    def _resumed(self, numbers: list[float]) -> _native.State: ...
+
+    def _seen(self, numbers: list[float]) -> dict[str, Any]: ...
+
+
+class State:
+    """The state of a motion, which `step` moves on; `liestep.Stepper.start` makes it.
+
+    A state compares with others of the same stepper, is copied by `copy`, and pickles: it goes on to the same bits. After an
+    error it is as it was. Threads step copies: while one makes many steps, another that reads is refused.
+
+    Examples
+    --------
+    A body is braked by a torque against its velocity.
+
+    >>> import liestep as ls
+    >>> state = ls.body([2, 3, 4.5]).stepper(0.01).start(velocity=[0.5, -1, 2])
+    >>> for _ in range(1000):
+    ...     state.step(torque=-2 * state.velocity)
+    >>> bool(abs(state.velocity).max() < 0.1), round(state.time, 9)
+    (True, 10.0)
+    """
+
+    __slots__ = ("_native", "_of")
+
+    def __init__(self, of: Origin, native: _native.State) -> None:
+        self._of, self._native = of, native
+
+    def step(self, steps: int = 1, *, torque: Any = None) -> None:
+        """Makes a step, or several.
+
+        Parameters
+        ----------
+        steps : int
+            How many: all of them, or none if one has no solution.
+        torque : array_like, optional
+            What acts during these steps, in the axes of the body: on SO(3) a torque, N m; on any group a component for each
+            of the velocity's. Half of its impulse ``h f`` is added to the momentum before each step and half behind it, so
+            that what is evaluated in the middle of a step leaves the method of second order.
+
+        Raises
+        ------
+        SetupError
+            The torque is no such vector.
+        StepError
+            A step has no solution.
+        """
+        self._native.step(steps if steps.__class__ is int and 0 < steps < 2**63 else whole("steps", steps, 1, 2**63 - 1), torque)
+
+    @property
+    def time(self) -> float:
+        """The time since the start, s."""
+        return self._native.time
+
+    @property
+    def steps(self) -> int:
+        """The number of steps since the start."""
+        return self._native.steps
+
+    @property
+    def velocity(self) -> Array:
+        """The body velocity, on SO(3) in the axes of the body in rad/s."""
+        return _array(self._native.velocity)
+
+    @property
+    def momentum(self) -> Array:
+        """The body momentum, on SO(3) in the axes of the body in kg m²/s."""
+        return _array(self._native.momentum)
+
+    @property
+    def spatial_momentum(self) -> Array:
+        """The momentum in space, ``Ad*`` of the attitude's inverse; on SO(3) the angular momentum, kg m²/s."""
+        return _array(self._native.spatial_momentum)
+
+    @property
+    def energy(self) -> float:
+        """The energy, J."""
+        return self._native.energy
+
+    @property
+    def attitude(self) -> Any:
+        """The attitude, as `liestep.Stepper.start` takes it: a matrix, body to space; on a product a list of matrices."""
+        entries, matrices, first = _array(self._native.attitude), [], 0
+        for rows, _ in self._native.factors:
+            matrices.append(entries[first : first + rows * rows].reshape(rows, rows))
+            first += rows * rows
+        return matrices if len(matrices) > 1 else matrices[0]
+
+    @property
+    def advected(self) -> dict[str, Any]:
+        """What is carried along, as the body sees it, by the names of its values in space.
+
+        Examples
+        --------
+        >>> import liestep as ls
+        >>> top = ls.body([3, 3, 4]) + ls.gravity(m=1, rho=[0, 0, 1])
+        >>> state = top.stepper(0.01).start(attitude=ls.euler(0, 90, degrees=True), velocity=[0, 0, 12])
+        >>> state.advected["up"].round(12).tolist()
+        [0.0, 1.0, 0.0]
+        """
+        return self._of._seen(self._native.advected)
+
+    def copy(self) -> State:
+        """Another state, which goes on from here."""
+        return State(self._of, self._native.copy())
+
+    __copy__ = copy
+
+    def __deepcopy__(self, memo: Any) -> State:
+        return self.copy()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, State):
+            return NotImplemented
+        return self._native.numbers == other._native.numbers and self._of.__reduce__() == other._of.__reduce__()
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _resumed, (self._of, self._native.numbers)
+
+    def __repr__(self) -> str:
+        return f"<State of {self._of!r} at {self.time:g} s>"
+
+
+def _array(numbers: list[float]) -> Array:
+    import numpy as np
+
+    return np.array(numbers)
+
+
+def _resumed(of: Origin, numbers: list[float]) -> State:
+    return State(of, of._resumed(numbers))

@@ -1,0 +1,235 @@
+//! The state of a motion that Python steps in a loop.
+
+use std::cell::RefCell;
+use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
+
+use liestep::motion::{AnyState, AnyStepper, FactorKind, Integrator as _};
+use liestep::with::Method;
+use pyo3::intern;
+use pyo3::prelude::*;
+use pyo3::types::{PyFloat, PyInt, PyList};
+
+use crate::failure::Failure;
+use crate::run::Signals;
+use crate::scene::Scene;
+
+/// A scene with a method and a step, from which each thread makes a stepper of its own.
+pub(crate) struct Source {
+    scene: Scene,
+    method: (Method, f64),
+}
+
+/// The most steppers that a thread keeps.
+const STEPPERS: usize = 64;
+
+thread_local! {
+    /// The steppers of this thread, that of the last step first.
+    static KNOWN: RefCell<Vec<(Arc<Source>, AnyStepper)>> = const { RefCell::new(Vec::new()) };
+}
+
+impl Source {
+    pub(crate) fn new(scene: Scene, method: (Method, f64)) -> Self {
+        Self { scene, method }
+    }
+
+    /// The stepper of this thread.
+    fn stepper(self: &Arc<Self>) -> Result<AnyStepper, Failure> {
+        KNOWN.with_borrow_mut(|known| {
+            match known.iter().position(|(own, _)| Arc::ptr_eq(own, self)) {
+                Some(place) => known.swap(0, place),
+                None => {
+                    known.truncate(STEPPERS - 1);
+                    known.insert(0, (Arc::clone(self), self.scene.stepper(self.method)?));
+                }
+            }
+            Ok(known[0].1.clone())
+        })
+    }
+}
+
+/// The state of a motion as its numbers, which are those of an [`AnyState`].
+#[pyclass(frozen, module = "liestep._native")]
+pub(crate) struct State {
+    source: Arc<Source>,
+    numbers: Mutex<Vec<f64>>,
+}
+
+/// Steps between two looks for signals.
+const LOOK: u64 = 4096;
+
+fn refused<T>(message: &str) -> Result<T, Failure> {
+    Err(Failure::Of("SetupError", message.to_owned()))
+}
+
+impl State {
+    /// The state of these numbers; they come from a state of the same source, maybe by way of a file.
+    pub(crate) fn of(source: Arc<Source>, numbers: Vec<f64>) -> Result<Self, Failure> {
+        let counts = |steps: &f64| *steps >= 0.0 && steps.fract() == 0.0 && *steps < 9e15;
+        let is_whole = numbers.last().is_some_and(counts) && numbers.iter().all(|number| number.is_finite());
+        if !is_whole || source.stepper()?.state_of(&numbers).is_none() {
+            return refused("these numbers are no state of this stepper");
+        }
+        Ok(Self { source, numbers: Mutex::new(numbers) })
+    }
+
+    fn lock(&self) -> Result<MutexGuard<'_, Vec<f64>>, Failure> {
+        match self.numbers.try_lock() {
+            Ok(numbers) => Ok(numbers),
+            Err(TryLockError::Poisoned(numbers)) => Ok(numbers.into_inner()),
+            Err(TryLockError::WouldBlock) => {
+                refused("this state is stepped by another thread: each thread takes a `copy()` of its own")
+            }
+        }
+    }
+
+    /// The stepper and the state.
+    fn now(&self) -> Result<(AnyStepper, AnyState), Failure> {
+        self.of_numbers(&*self.lock()?)
+    }
+
+    fn of_numbers(&self, numbers: &[f64]) -> Result<(AnyStepper, AnyState), Failure> {
+        let stepper = self.source.stepper()?;
+        match stepper.state_of(numbers) {
+            Some(state) => Ok((stepper, state)),
+            None => refused("these numbers are no state of this stepper"),
+        }
+    }
+
+    /// Makes all of the steps, or on an error none.
+    fn make(&self, steps: u64, torque: Option<&[f64]>) -> Result<(), Failure> {
+        let mut numbers = self.lock()?;
+        let (stepper, mut state) = self.of_numbers(&numbers)?;
+        match torque {
+            Some(torque) => {
+                let expected = stepper.layout().components();
+                if torque.len() != expected {
+                    let found = torque.len();
+                    return refused(&format!("a torque has {expected} components here, not {found}"));
+                }
+                if !torque.iter().all(|part| part.is_finite()) {
+                    return refused("a torque is finite");
+                }
+                if stepper.length(&state).is_some() {
+                    return refused("steps of a pace or a density have lengths of their own: no torque acts on them");
+                }
+                in_stretches(steps, |stretch| {
+                    (0..stretch).try_for_each(|_| stepper.step_forced(&mut state, torque).map(drop))
+                })?;
+            }
+            None if steps == 1 => drop(stepper.step(&mut state).map_err(|error| Failure::step(&error))?),
+            None => in_stretches(steps, |stretch| stepper.run(&mut state, stretch).map(drop))?,
+        }
+        numbers.copy_from_slice(state.numbers());
+        Ok(())
+    }
+}
+
+/// Makes steps in stretches, with a look for Ctrl-C behind each.
+fn in_stretches(
+    mut steps: u64,
+    mut make: impl FnMut(u64) -> Result<(), liestep::StepError>,
+) -> Result<(), Failure> {
+    let signals = (steps > LOOK).then(Signals::new);
+    while steps > 0 {
+        let stretch = steps.min(LOOK);
+        make(stretch).map_err(|error| Failure::step(&error))?;
+        steps -= stretch;
+        if let Some(signals) = &signals
+            && signals.look().is_err()
+        {
+            break;
+        }
+    }
+    signals.and_then(Signals::into_failure).map_or(Ok(()), Err)
+}
+
+/// The numbers of a vector: those of a list of floats at once, those of anything else as `liestep._arrays` reads it.
+fn vector(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    if let Ok(list) = value.cast_exact::<PyList>() {
+        let plain = |item: Bound<'_, PyAny>| {
+            let is_plain = item.is_exact_instance_of::<PyFloat>() || item.is_exact_instance_of::<PyInt>();
+            is_plain.then(|| item.extract().ok()).flatten()
+        };
+        if let Some(numbers) = list.iter().map(plain).collect() {
+            return Ok(numbers);
+        }
+    }
+    let py = value.py();
+    py.import(intern!(py, "liestep._arrays"))?.getattr(intern!(py, "vector"))?.call1((name, value))?.extract()
+}
+
+#[pymethods]
+impl State {
+    /// Makes steps, each under this torque.
+    fn step(&self, py: Python<'_>, steps: u64, torque: Option<Bound<'_, PyAny>>) -> PyResult<()> {
+        let torque = torque.map(|torque| vector("torque", &torque)).transpose()?;
+        if steps == 1 {
+            return Ok(self.make(1, torque.as_deref())?);
+        }
+        Ok(py.detach(|| self.make(steps, torque.as_deref()))?)
+    }
+
+    fn copy(&self) -> PyResult<Self> {
+        Ok(Self { source: Arc::clone(&self.source), numbers: Mutex::new(self.numbers()?) })
+    }
+
+    /// All numbers of the state.
+    #[getter]
+    fn numbers(&self) -> PyResult<Vec<f64>> {
+        Ok(self.lock()?.clone())
+    }
+
+    /// For each factor of the group the rows of its matrices, and whether they are rotations of space.
+    #[getter]
+    fn factors(&self) -> PyResult<Vec<(usize, bool)>> {
+        let stepper = self.source.stepper()?;
+        let factors = stepper.layout().factors.iter();
+        Ok(factors.map(|factor| (factor.kind.rows(), factor.kind == FactorKind::Rotation)).collect())
+    }
+
+    #[getter]
+    fn steps(&self) -> PyResult<u64> {
+        Ok(self.now()?.1.steps())
+    }
+
+    #[getter]
+    fn time(&self) -> PyResult<f64> {
+        let (stepper, state) = self.now()?;
+        Ok(stepper.time(&state))
+    }
+
+    #[getter]
+    fn energy(&self) -> PyResult<f64> {
+        let (stepper, state) = self.now()?;
+        Ok(stepper.energy(&state))
+    }
+
+    /// The entries of the matrices, row by row.
+    #[getter]
+    fn attitude(&self) -> PyResult<Vec<f64>> {
+        Ok(self.now()?.1.attitude().to_vec())
+    }
+
+    /// The numbers of what is carried along, as the body sees them.
+    #[getter]
+    fn advected(&self) -> PyResult<Vec<f64>> {
+        Ok(self.source.scene.seen(&self.lock()?)?)
+    }
+
+    #[getter]
+    fn velocity(&self) -> PyResult<Vec<f64>> {
+        let (stepper, state) = self.now()?;
+        Ok(stepper.velocity(&state))
+    }
+
+    #[getter]
+    fn momentum(&self) -> PyResult<Vec<f64>> {
+        Ok(self.now()?.1.momentum().to_vec())
+    }
+
+    #[getter]
+    fn spatial_momentum(&self) -> PyResult<Vec<f64>> {
+        let (stepper, state) = self.now()?;
+        Ok(stepper.spatial_momentum(&state))
+    }
+}
