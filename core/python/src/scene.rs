@@ -30,7 +30,8 @@ impl Scene {
         self.with(&self.numbers, (method, h))
     }
 
-    fn with(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
+    /// The stepper with other numbers of all terms.
+    pub(crate) fn with(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
         if self.has_force && !method.is_plain() {
             let message = "a scene with a force is made by its own step alone: leave the method out";
             return Err(Failure::Of("SetupError", message.to_owned()));

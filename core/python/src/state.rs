@@ -96,31 +96,66 @@ impl State {
     }
 
     /// Makes all of the steps, or on an error none.
-    fn make(&self, steps: u64, torque: Option<&[f64]>) -> Result<(), Failure> {
+    fn make(&self, steps: u64, inputs: &Inputs) -> Result<(), Failure> {
         let mut numbers = self.lock()?;
         let (stepper, mut state) = self.of_numbers(&numbers)?;
-        match torque {
-            Some(torque) => {
-                let expected = stepper.layout().components();
-                if torque.len() != expected {
-                    let found = torque.len();
-                    return refused(&format!("a torque has {expected} components here, not {found}"));
-                }
-                if !torque.iter().all(|part| part.is_finite()) {
-                    return refused("a torque is finite");
-                }
-                if stepper.length(&state).is_some() {
-                    return refused("steps of a pace or a density have lengths of their own: no torque acts on them");
-                }
-                in_stretches(steps, |stretch| {
-                    (0..stretch).try_for_each(|_| stepper.step_forced(&mut state, torque).map(drop))
-                })?;
+        if !inputs.are_none() && stepper.length(&state).is_some() {
+            return refused("steps of a pace or a density have lengths of their own, and take no inputs");
+        }
+        if let Some(torque) = &inputs.torque {
+            let (expected, found) = (stepper.layout().components(), torque.len());
+            if found != expected {
+                return refused(&format!("a torque has {expected} components here, not {found}"));
             }
-            None if steps == 1 => drop(stepper.step(&mut state).map_err(|error| Failure::step(&error))?),
-            None => in_stretches(steps, |stretch| stepper.run(&mut state, stretch).map(drop))?,
+            if !torque.iter().all(|part| part.is_finite()) {
+                return refused("a torque is finite");
+            }
+        }
+        if let Some(given) = &inputs.numbers {
+            let (Source { scene, method }, before) = (&*self.source, state.steps());
+            let driven = scene.with(given, *method)?;
+            let mut next = counted(&driven, &driven.adopt(&state), before)?;
+            made(&driven, &mut next, steps, inputs)?;
+            state = counted(&stepper, &stepper.adopt(&next), before + steps)?;
+        } else {
+            made(&stepper, &mut state, steps, inputs)?;
         }
         numbers.copy_from_slice(state.numbers());
         Ok(())
+    }
+}
+
+/// The inputs of a step, which are constant in it.
+struct Inputs {
+    torque: Option<Vec<f64>>,
+    /// The numbers of all terms, where some are others than those of the scene.
+    numbers: Option<Vec<f64>>,
+}
+
+impl Inputs {
+    const fn are_none(&self) -> bool {
+        self.torque.is_none() && self.numbers.is_none()
+    }
+}
+
+/// The state of these numbers after so many steps.
+#[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
+fn counted(stepper: &AnyStepper, state: &AnyState, steps: u64) -> Result<AnyState, Failure> {
+    let mut numbers = state.numbers().to_vec();
+    if let Some(last) = numbers.last_mut() {
+        *last = steps as f64;
+    }
+    stepper.state_of(&numbers).map_or_else(|| refused("these numbers are no state of this stepper"), Ok)
+}
+
+/// Makes steps under a torque, if there is one.
+fn made(stepper: &AnyStepper, state: &mut AnyState, steps: u64, inputs: &Inputs) -> Result<(), Failure> {
+    match &inputs.torque {
+        None if steps == 1 => stepper.step(state).map(drop).map_err(|error| Failure::step(&error)),
+        None => in_stretches(steps, |stretch| stepper.run(state, stretch).map(drop)),
+        Some(torque) => in_stretches(steps, |stretch| {
+            (0..stretch).try_for_each(|_| stepper.step_forced(state, torque).map(drop))
+        }),
     }
 }
 
@@ -160,13 +195,19 @@ fn vector(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
 
 #[pymethods]
 impl State {
-    /// Makes steps, each under this torque.
-    fn step(&self, py: Python<'_>, steps: u64, torque: Option<Bound<'_, PyAny>>) -> PyResult<()> {
-        let torque = torque.map(|torque| vector("torque", &torque)).transpose()?;
+    /// Makes steps, each under this torque and with these numbers of all terms.
+    fn step(
+        &self,
+        py: Python<'_>,
+        steps: u64,
+        torque: Option<Bound<'_, PyAny>>,
+        numbers: Option<Vec<f64>>,
+    ) -> PyResult<()> {
+        let inputs = Inputs { torque: torque.map(|torque| vector("torque", &torque)).transpose()?, numbers };
         if steps == 1 {
-            return Ok(self.make(1, torque.as_deref())?);
+            return Ok(self.make(1, &inputs)?);
         }
-        Ok(py.detach(|| self.make(steps, torque.as_deref()))?)
+        Ok(py.detach(|| self.make(steps, &inputs))?)
     }
 
     fn copy(&self) -> PyResult<Self> {

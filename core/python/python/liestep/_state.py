@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Protocol
 
 from . import _native
@@ -11,12 +12,18 @@ if TYPE_CHECKING:
     from ._arrays import Array
 
 
+#: The most steps at once.
+MOST = 2**52
+
+
 class Origin(Protocol):
     """What a state is of: a stepper, or a scene's file."""
 
     def _resumed(self, numbers: list[float]) -> _native.State: ...
 
     def _seen(self, numbers: list[float]) -> dict[str, Any]: ...
+
+    def _given(self, parameters: Mapping[str, Any]) -> list[float]: ...
 
 
 class State:
@@ -42,7 +49,7 @@ class State:
     def __init__(self, of: Origin, native: _native.State) -> None:
         self._of, self._native = of, native
 
-    def step(self, steps: int = 1, *, torque: Any = None) -> None:
+    def step(self, steps: int = 1, *, torque: Any = None, given: Mapping[str, Any] | None = None) -> None:
         """Makes a step, or several.
 
         Parameters
@@ -54,14 +61,33 @@ class State:
             of the velocity's. Half of its impulse ``h f`` is added to the momentum before each step and half behind it, so
             that what is evaluated in the middle of a step leaves the method of second order.
 
+        given : mapping, optional
+            Other values of parameters during these steps, by the names of `liestep.Term.with_`: the input of a force of your
+            own, a field that turns. Momentum and attitude go on; what is advected, the energy and the velocity between steps
+            are those of the parameters themselves.
+
         Raises
         ------
         SetupError
             The torque is no such vector.
+        DeclarationError
+            There is no such parameter.
         StepError
             A step has no solution.
+
+        Examples
+        --------
+        A spring is cut for a second.
+
+        >>> import liestep as ls
+        >>> top = ls.body([3, 3, 4]) + ls.spring(k=100, length=1, at=[0, 0, 1], anchor=[0, 0, 3])
+        >>> state = top.stepper(0.01).start(velocity=[0.1, 0, 2])
+        >>> state.step(100, given={"k": 0})
         """
-        self._native.step(steps if steps.__class__ is int and 0 < steps < 2**63 else whole("steps", steps, 1, 2**63 - 1), torque)
+        numbers = None if given is None else self._of._given(given)
+        if steps.__class__ is not int or not 0 < steps < MOST:
+            whole("steps", steps, 1, MOST)
+        self._native.step(steps, torque, numbers)
 
     @property
     def time(self) -> float:

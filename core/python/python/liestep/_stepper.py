@@ -298,6 +298,11 @@ class Stepper:
     def _seen(self, numbers: list[float]) -> dict[str, Any]:
         return self.term._seen(numbers)
 
+    def _given(self, parameters: Mapping[str, Any]) -> list[float]:
+        if not isinstance(parameters, Mapping):
+            raise SetupError(f'`given` are values by the names of parameters, as {{"m": 2.0}}, not {parameters!r:.80}')
+        return [number for _, numbers in self.term.with_(**parameters)._terms() for number in numbers]
+
     def _course(self, until: Any, every: Any, times: Any, events: Any) -> _Course:
         are_equal = self.method[0] != "density" and not self.term.has_pace
         return _course(until, 1 if every is None else every, times, events, self.step if are_equal else None)
