@@ -1,6 +1,6 @@
 //! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
 //!
-//! `lib → {control, file, picture, state} → scene → ensemble → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
+//! `lib → {control, picture, file → state} → scene → ensemble → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
 //! declares is stepped by any method, recorded into columns that `NumPy` and Arrow look at where they are, or drawn at random.
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
@@ -149,13 +149,13 @@ impl Scene {
         let method = (method(&how)?, h);
         let stepper = self.0.stepper(method)?;
         let numbers = started(&stepper, &start)?.numbers().to_vec();
-        Ok(State::of(Arc::new(Source::new(self.0.clone(), method)), numbers)?)
+        Ok(State::of(Arc::new(Source::Declared(self.0.clone(), method)), numbers)?)
     }
 
     /// A state that continues another by its numbers.
     #[allow(clippy::needless_pass_by_value)]
     fn resume(&self, h: f64, how: Names, numbers: Vec<f64>) -> PyResult<State> {
-        Ok(State::of(Arc::new(Source::new(self.0.clone(), (method(&how)?, h))), numbers)?)
+        Ok(State::of(Arc::new(Source::Declared(self.0.clone(), (method(&how)?, h))), numbers)?)
     }
 
     #[allow(clippy::needless_pass_by_value)]

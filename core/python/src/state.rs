@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
 use liestep::motion::{AnyState, AnyStepper, FactorKind, Integrator as _};
 use liestep::with::Method;
+use liestep_scene::System;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyList};
@@ -13,10 +14,12 @@ use crate::failure::Failure;
 use crate::run::Signals;
 use crate::scene::Scene;
 
-/// A scene with a method and a step, from which each thread makes a stepper of its own.
-pub(crate) struct Source {
-    scene: Scene,
-    method: (Method, f64),
+/// The source of a state, from which each thread makes a stepper of its own.
+pub(crate) enum Source {
+    /// A scene with a method and a step.
+    Declared(Scene, (Method, f64)),
+    /// A file.
+    File(liestep_scene::Scene),
 }
 
 /// The most steppers that a thread keeps.
@@ -28,8 +31,17 @@ thread_local! {
 }
 
 impl Source {
-    pub(crate) fn new(scene: Scene, method: (Method, f64)) -> Self {
-        Self { scene, method }
+    fn make(&self) -> Result<AnyStepper, Failure> {
+        Ok(match self {
+            Self::Declared(scene, method) => scene.stepper(*method)?,
+            Self::File(liestep_scene::Scene::Body(scene)) => scene.stepper()?.0,
+            Self::File(liestep_scene::Scene::System(system)) => system.stepper()?.0,
+        })
+    }
+
+    /// The system of several bodies, if it is one.
+    fn system(&self) -> Option<&System> {
+        if let Self::File(liestep_scene::Scene::System(system)) = self { Some(system) } else { None }
     }
 
     /// The stepper of this thread.
@@ -39,7 +51,7 @@ impl Source {
                 Some(place) => known.swap(0, place),
                 None => {
                     known.truncate(STEPPERS - 1);
-                    known.insert(0, (Arc::clone(self), self.scene.stepper(self.method)?));
+                    known.insert(0, (Arc::clone(self), self.make()?));
                 }
             }
             Ok(known[0].1.clone())
@@ -112,8 +124,10 @@ impl State {
             }
         }
         if let Some(given) = &inputs.numbers {
-            let (Source { scene, method }, before) = (&*self.source, state.steps());
-            let driven = scene.with(given, *method)?;
+            let Source::Declared(scene, method) = &*self.source else {
+                return refused("parameters of a file's scene are those of the file");
+            };
+            let (driven, before) = (scene.with(given, *method)?, state.steps());
             let mut next = counted(&driven, &driven.adopt(&state), before)?;
             made(&driven, &mut next, steps, inputs)?;
             state = counted(&stepper, &stepper.adopt(&next), before + steps)?;
@@ -178,6 +192,28 @@ fn in_stretches(
     signals.and_then(Signals::into_failure).map_or(Ok(()), Err)
 }
 
+/// Adds a vector to the force on a body, from this component on.
+fn on_body(
+    system: &System,
+    name: &str,
+    (numbers, first): (&[f64], usize),
+    forces: &mut [f64],
+) -> Result<(), Failure> {
+    let Some(body) = system.names().position(|own| own == name) else {
+        let listed = |names: Vec<&str>| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+        let (bodies, joints) = (listed(system.names().collect()), listed(system.joint_names().collect()));
+        let joints = if joints.is_empty() { "none of its joints has a `name`".to_owned() } else { format!("joints {joints}") };
+        return refused(&format!("there is no `{name}`: there are the bodies {bodies}, and {joints}"));
+    };
+    let &[x, y, z] = numbers else {
+        return refused(&format!("what acts on the body `{name}` has three components, not {}", numbers.len()));
+    };
+    for (place, number) in forces.iter_mut().skip(6 * body + first).zip([x, y, z]) {
+        *place += number;
+    }
+    Ok(())
+}
+
 /// The numbers of a vector: those of a list of floats at once, those of anything else as `liestep._arrays` reads it.
 fn vector(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     if let Ok(list) = value.cast_exact::<PyList>() {
@@ -208,6 +244,46 @@ impl State {
             return Ok(self.make(1, &inputs)?);
         }
         Ok(py.detach(|| self.make(steps, &inputs))?)
+    }
+
+    /// The forces on all bodies of efforts by the names of joints, and of torques and of forces by the names of bodies.
+    fn forces(&self, torques: Vec<(String, Vec<f64>)>, forces: Vec<(String, Vec<f64>)>) -> PyResult<Vec<f64>> {
+        let Some(system) = self.source.system() else {
+            return Ok(refused("inputs by names are those of several bodies: give the components of one torque")?);
+        };
+        let mut all = vec![0.0; 6 * system.names().count()];
+        for (name, numbers) in &torques {
+            match (system.joint(name), &numbers[..]) {
+                (Some(joint), &[effort]) => system
+                    .drive(joint, effort, &mut all)
+                    .or_else(|why| refused(&format!("the joint `{name}` {why}")))?,
+                (Some(_), _) => refused(&format!("the torque in the joint `{name}` is one number"))?,
+                (None, _) => on_body(system, name, (numbers, 0), &mut all)?,
+            }
+        }
+        for (name, numbers) in &forces {
+            on_body(system, name, (numbers, 3), &mut all)?;
+        }
+        Ok(all)
+    }
+
+    /// The names of the bodies; none of one body.
+    #[getter]
+    fn bodies(&self) -> Vec<String> {
+        self.source.system().map_or_else(Vec::new, |system| system.names().map(str::to_owned).collect())
+    }
+
+    /// The joints that have a name and one coordinate, with the coordinate and its rate.
+    #[getter]
+    fn joints(&self) -> PyResult<Vec<(String, f64, f64)>> {
+        let Some(system) = self.source.system() else { return Ok(Vec::new()) };
+        let (stepper, state) = self.now()?;
+        let velocity = stepper.velocity(&state);
+        let coordinate = |name: &str| {
+            let [now, rate] = system.coordinate(system.joint(name)?, &state, &velocity)?;
+            Some((name.to_owned(), now, rate))
+        };
+        Ok(system.joint_names().filter_map(coordinate).collect())
     }
 
     fn copy(&self) -> PyResult<Self> {
@@ -254,7 +330,8 @@ impl State {
     /// The numbers of what is carried along, as the body sees them.
     #[getter]
     fn advected(&self) -> PyResult<Vec<f64>> {
-        Ok(self.source.scene.seen(&self.lock()?)?)
+        let Source::Declared(scene, _) = &*self.source else { return Ok(Vec::new()) };
+        Ok(scene.seen(&self.lock()?)?)
     }
 
     #[getter]

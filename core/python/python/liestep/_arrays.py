@@ -38,6 +38,11 @@ def number(name: str, value: Any) -> float:
 
 def vector(name: str, value: Any) -> list[float]:
     """A list of real numbers."""
+    import numpy as np
+
+    if type(value) is np.ndarray and value.dtype == float and value.ndim == 1:
+        own: list[float] = value.tolist()
+        return own
     array = floats(name, value, SetupError)
     if array.ndim != 1:
         raise SetupError(f"`{name}` is a list of numbers, not an array of the shape {array.shape}")

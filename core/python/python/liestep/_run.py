@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _arrays, _native
-from .errors import ColumnError
+from ._state import State
+from .errors import ColumnError, SetupError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -350,6 +351,45 @@ class Scene:
     def run(self) -> SceneRun:
         """Makes the run that the file says."""
         return SceneRun(self._file.run())
+
+    def start(self) -> State:
+        """The state at the file's start, for a loop of your own with its step.
+
+        Examples
+        --------
+        A pendulum of two rods whose elbow is driven:
+
+        >>> import liestep as ls
+        >>> text = '''
+        ... title = "Acrobot"
+        ... gravity = { g = 9.81, up = [0, 0, 1] }
+        ... body = [
+        ...     { name = "upper", m = 1, moments = [0.1, 0.1, 0.001] },
+        ...     { name = "fore", m = 1, moments = [0.1, 0.1, 0.001] },
+        ... ]
+        ... joint = [
+        ...     { kind = "pin", bodies = ["space", "upper"], at = [[0, 0, 0], [0, 0, 0.5]], axes = [[0, 1, 0], [0, 1, 0]] },
+        ...     { name = "elbow", kind = "pin", bodies = ["upper", "fore"], at = [[0, 0, -0.5], [0, 0, 0.5]],
+        ...       axes = [[0, 1, 0], [0, 1, 0]] },
+        ... ]
+        ... run = { step = 0.001, duration = 1 }
+        ... '''
+        >>> state = ls.scene("acrobot.toml", text).start()
+        >>> state.step(100, torque={"elbow": 1.0})
+        >>> angle, rate = state.joints["elbow"]
+        >>> angle > 0 and rate > 0
+        True
+        """
+        return State(self, self._file.start())
+
+    def _resumed(self, numbers: list[float]) -> _native.State:
+        return self._file.resume(numbers)
+
+    def _seen(self, numbers: list[float]) -> dict[str, Any]:
+        raise SetupError("what a file's scene carries along has no names here: read the attitude")
+
+    def _given(self, parameters: Mapping[str, Any]) -> list[float]:
+        raise SetupError("parameters of a file's scene are those of the file: take a term, as `ls.body(J) + …`")
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Scene, (self._path, self._text)

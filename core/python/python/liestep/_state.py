@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from . import _native
-from ._arrays import whole
+from ._arrays import floats, text, whole
+from .errors import SetupError
 
 if TYPE_CHECKING:
     from ._arrays import Array
@@ -24,6 +25,25 @@ class Origin(Protocol):
     def _seen(self, numbers: list[float]) -> dict[str, Any]: ...
 
     def _given(self, parameters: Mapping[str, Any]) -> list[float]: ...
+
+
+class BodyState(NamedTuple):
+    """One of several bodies.
+
+    Attributes
+    ----------
+    attitude : array
+        A matrix, body to space.
+    position, moving : array
+        The centre of mass in space, m, and its velocity, m/s.
+    velocity : array
+        The angular velocity in the axes of the body, rad/s.
+    """
+
+    attitude: Array
+    position: Array
+    velocity: Array
+    moving: Array
 
 
 class State:
@@ -49,17 +69,23 @@ class State:
     def __init__(self, of: Origin, native: _native.State) -> None:
         self._of, self._native = of, native
 
-    def step(self, steps: int = 1, *, torque: Any = None, given: Mapping[str, Any] | None = None) -> None:
+    def step(
+        self, steps: int = 1, *, torque: Any = None, force: Mapping[str, Any] | None = None,
+        given: Mapping[str, Any] | None = None,
+    ) -> None:
         """Makes a step, or several.
 
         Parameters
         ----------
         steps : int
             How many: all of them, or none if one has no solution.
-        torque : array_like, optional
+        torque : array_like or mapping, optional
             What acts during these steps, in the axes of the body: on SO(3) a torque, N m; on any group a component for each
             of the velocity's. Half of its impulse ``h f`` is added to the momentum before each step and half behind it, so
-            that what is evaluated in the middle of a step leaves the method of second order.
+            that what is evaluated in the middle of a step leaves the method of second order. Of several bodies by names: of
+            joints a number, N m about the axis or N along the rail of a slider, and of bodies three, N m in their axes.
+        force : mapping, optional
+            Of several bodies what acts on the centres of mass, N, in space, by the names of bodies.
 
         given : mapping, optional
             Other values of parameters during these steps, by the names of `liestep.Term.with_`: the input of a force of your
@@ -87,6 +113,8 @@ class State:
         numbers = None if given is None else self._of._given(given)
         if steps.__class__ is not int or not 0 < steps < MOST:
             whole("steps", steps, 1, MOST)
+        if force is not None or isinstance(torque, Mapping):
+            torque = self._native.forces(_named("torque", torque), _named("force", force))
         self._native.step(steps, torque, numbers)
 
     @property
@@ -129,6 +157,25 @@ class State:
         return matrices if len(matrices) > 1 else matrices[0]
 
     @property
+    def bodies(self) -> dict[str, BodyState]:
+        """Of several bodies each by its name."""
+        attitude, velocity = self.attitude, self.velocity
+        return {
+            name: BodyState(
+                attitude[2 * at], attitude[2 * at + 1][:3, 3], velocity[6 * at : 6 * at + 3], velocity[6 * at + 3 : 6 * at + 6]
+            )
+            for at, name in enumerate(self._native.bodies)
+        }
+
+    @property
+    def joints(self) -> dict[str, tuple[float, float]]:
+        """The joints of several bodies that have a name and one coordinate: angle, rad, or shift, m, and its rate.
+
+        They are those of a pin, a plane or a slider: of the second body relative to the first, an angle between −π and π.
+        """
+        return {name: (coordinate, rate) for name, coordinate, rate in self._native.joints}
+
+    @property
     def advected(self) -> dict[str, Any]:
         """What is carried along, as the body sees it, by the names of its values in space.
 
@@ -163,6 +210,15 @@ class State:
 
     def __repr__(self) -> str:
         return f"<State of {self._of!r} at {self.time:g} s>"
+
+
+def _named(name: str, values: Any) -> _native.Named:
+    """Vectors by names; a number is a vector of one."""
+    if not isinstance(values, Mapping):
+        if values is None:
+            return []
+        raise SetupError(f'`{name}` of several bodies is by names, as {{"elbow": 0.3}}, not {values!r:.80}')
+    return [(text(name, key), floats(name, value, SetupError).ravel().tolist()) for key, value in values.items()]
 
 
 def _array(numbers: list[float]) -> Array:

@@ -5,6 +5,7 @@ pub(crate) mod choose;
 pub(crate) mod course;
 mod ends;
 pub(crate) mod make;
+mod motors;
 mod nearest;
 mod scene;
 mod second;
