@@ -170,3 +170,62 @@ def test_what_is_no_input_leaves_the_state(inputs, message):
     with pytest.raises(ls.Error, match=message):
         state.step(**inputs)
     assert state == before
+
+
+TABLES = {
+    "title": 'A "cart" \x7f with a pole\n', "gravity": {"g": 9.81, "up": np.array([0, 0, 1])},
+    "body": [
+        {"name": "cart", "m": "1 kg", "J": np.eye(3)},
+        {"name": "pole", "m": np.float64(1), "moments": (0.1, 0.1, 0.001)},
+    ],
+    "joint": [
+        {"name": "rail", "kind": "slider", "bodies": ["space", "cart"], "at": np.zeros((2, 3)), "axes": [[1, 0, 0], [1, 0, 0]]},
+        {"name": "hinge", "kind": "pin", "bodies": ["cart", "pole"], "at": [[0, 0, 0], [0, 0, 0.5]],
+         "axes": [[0, 1, 0], [0, 1, 0]], "angle": 0.5},
+    ],
+    "run": {"step": 0.01, "duration": np.int64(1), "nearest": False},
+}
+
+
+def test_tables_are_the_scene_of_the_file():
+    scene, file = ls.scene(TABLES), cart(0.01)
+    assert scene.title == 'A "cart" \\u{7f} with a pole\\n'
+    run, other = scene.run(), file.run()
+    for name in other.names:
+        assert (run[name] == other[name]).all()
+    state = pickle.loads(pickle.dumps(scene)).start()
+    state.step(10)
+    begun = file.start()
+    begun.step(10)
+    assert state.joints == begun.joints
+
+
+@pytest.mark.parametrize(("tables", "message"), [
+    ({}, "title"),
+    ({**TABLES, "title": 3}, "string"),
+    ({**TABLES, 3: 3}, "texts"),
+    ({**TABLES, "wind": 3}, "unknown field `wind`"),
+    ({**TABLES, "gravity": {"g": 1j, "up": [0, 0, 1]}}, "real numbers"),
+    ({**TABLES, "gravity": {"g": None, "up": [0, 0, 1]}}, "gravity.g"),
+    ({**TABLES, "gravity": {"g": float("nan"), "up": [0, 0, 1]}}, "finite"),
+    ({**TABLES, "gravity": {"g": 10**30, "up": [0, 0, 1]}}, "is a number"),
+    ({**TABLES, "gravity": {"g": 1, "up": b"001"}}, "gravity.up"),
+    ({**TABLES, "title": "\ud800"}, "no text"),
+], ids=str)
+def test_what_are_no_tables(tables, message):
+    with pytest.raises(ls.SceneError, match=message):
+        ls.scene(tables)
+
+
+def test_mistakes_of_tables_have_lines_of_their_text():
+    tables = {**TABLES, "joint": [*TABLES["joint"], {"kind": "hinge", "bodies": ["cart", "pole"], "at": np.zeros((2, 3))}]}
+    with pytest.raises(ls.SceneError, match="hinge") as caught:
+        ls.scene(tables)
+    assert caught.value.line == 10
+    endless: dict[str, object] = {}
+    endless["gravity"] = endless
+    with pytest.raises(ls.SceneError, match="without an end"):
+        ls.scene(endless)
+    with pytest.raises(ls.SceneError, match="both"):
+        ls.scene(TABLES, "title = 3")
+    assert "moments" in ls.scene(TABLES).text

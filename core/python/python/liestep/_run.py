@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from . import _arrays, _native
 from ._state import State
-from .errors import ColumnError, SetupError
+from ._tables import written
+from .errors import ColumnError, SceneError, SetupError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -348,6 +349,11 @@ class Scene:
         """What it is called."""
         return self._file.title
 
+    @property
+    def text(self) -> str | None:
+        """The text that it was made of; none of a file."""
+        return self._text
+
     def run(self) -> SceneRun:
         """Makes the run that the file says."""
         return SceneRun(self._file.run())
@@ -398,10 +404,18 @@ class Scene:
         return f"<Scene {self.title}: {self._file.about}>"
 
 
-def scene(path: str | Path, text: str | None = None) -> Scene:
-    """A scene from a file of TOML, or from its text: one body, or several with joints and springs.
+def scene(path: str | Path | Mapping[str, Any], text: str | None = None) -> Scene:
+    """A scene from a file of TOML, from its text, or from its tables: one body, or several with joints and springs.
 
     Every key is on the page of `liestep_scene::SceneFile`.
+
+    Parameters
+    ----------
+    path : str, Path or mapping
+        The file; or the tables that it would have, with numbers, texts with a unit, lists and arrays as values. Mistakes of tables
+        have the lines of `Scene.text`.
+    text : str, optional
+        The text of the file, which isn't read then.
 
     Examples
     --------
@@ -419,5 +433,15 @@ def scene(path: str | Path, text: str | None = None) -> Scene:
     ... '''
     >>> len(ls.scene("wing-nut.toml", text).run())
     1001
+    >>> tables = {
+    ...     "title": "A wing nut", "body": {"moments": [1.0, 2.0, 2.5]}, "run": {"step": "20 ms", "duration": 20},
+    ...     "start": {"euler": [0, 0, 0], "velocity": [0.001, "2 rad/s", 0.001]},
+    ... }
+    >>> len(ls.scene(tables).run())
+    1001
     """
+    if isinstance(path, Mapping):
+        if text is not None:
+            raise SceneError("a scene is made of tables or of a text, and these are both")
+        return Scene("scene.toml", written(path))
     return Scene(path, text)
