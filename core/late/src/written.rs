@@ -236,7 +236,7 @@ fn functions(programs: &Programs) -> [(&'static str, Option<&Program>); 10] {
 }
 
 const HEAD: &str = include_str!("head.c");
-const POLYNOMIAL: &str = include_str!("functions.c");
+const POLYNOMIAL: &str = include_str!("polynomial.c");
 const STUMPFF: &str = include_str!("stumpff.c");
 const LOG_RATIO: &str = include_str!("log_ratio.c");
 const STEP: &str = include_str!("step.c");

@@ -11,7 +11,6 @@ import pytest
 import liestep as ls
 
 TRACE = "((F - I) * J_d * (F - I).transpose()).trace() / (2 * h)"
-BOTH_TRACES = "(((F - I) * J * (F - I).transpose()).trace() + ((I - inverse(F)) * J * (I - inverse(F)).transpose()).trace()) / (4 * h)"
 
 
 def unit(n, *entries):
@@ -23,7 +22,7 @@ def unit(n, *entries):
 
 TURNS = [unit(3, (a, b, -1), (b, a, 1)) for a, b in ((1, 2), (2, 0), (0, 1))]
 MOVES = [np.pad(turn, (0, 1)) for turn in TURNS] + [unit(4, (k, 3, 1)) for k in range(3)]
-#: The bases that the library has, and how its group's matrices are made.
+#: The bases that the library has.
 BASES = {
     "SO3": TURNS,
     "SE3": MOVES,
@@ -39,27 +38,28 @@ def metric(n):
     return np.eye(n) * (1 + np.arange(n) / n) + 0.1 * (mixed + mixed.T) / 2
 
 
-def by_runge_kutta(basis, kinetic, velocity, *, bias=0.0, slope=None, time=1.0, steps=400):
-    """Attitude and velocity by ``μ' = ad*_ξ μ − dV(g E_k)``, ``μ = K ξ + b``, ``g' = g ξ̂``."""
+def by_runge_kutta(rates, now, steps=400):
+    """The numbers after a second by classical Runge–Kutta steps."""
+    h = 1 / steps
+    for _ in range(steps):
+        a = rates(now)
+        b = rates(now + a * h / 2)
+        c = rates(now + b * h / 2)
+        now = now + (a + 2 * b + 2 * c + rates(now + c * h)) * h / 6
+    return now
+
+
+def free_motion(basis, kinetic, velocity, bias=0.0):
+    """The velocity after a second by the Euler–Poincaré equations ``μ' = ad*_ξ μ``, ``μ = K ξ + b``."""
     basis = np.array(basis)
     dual = np.linalg.pinv(basis.reshape(len(basis), -1).T)
     inverse = np.linalg.inv(kinetic)
 
-    def rates(g, mu):
+    def rates(mu):
         hat = np.tensordot(inverse @ (mu - bias), basis, 1)
-        brackets = [dual @ (hat @ e - e @ hat).ravel() for e in basis]
-        rate = np.array(brackets) @ mu
-        return g @ hat, rate if slope is None else rate - np.array([(slope(g) * (g @ e)).sum() for e in basis])
+        return np.array([dual @ (hat @ e - e @ hat).ravel() for e in basis]) @ mu
 
-    now = [np.eye(basis.shape[1]), kinetic @ np.asarray(velocity, float) + bias]
-    h = time / steps
-    for _ in range(steps):
-        a = rates(*now)
-        b = rates(*(x + y * h / 2 for x, y in zip(now, a, strict=True)))
-        c = rates(*(x + y * h / 2 for x, y in zip(now, b, strict=True)))
-        d = rates(*(x + y * h for x, y in zip(now, c, strict=True)))
-        now = [x + (p + 2 * q + 2 * r + s) * h / 6 for x, p, q, r, s in zip(now, a, b, c, d, strict=True)]
-    return now[0], inverse @ (now[1] - bias)
+    return inverse @ (by_runge_kutta(rates, kinetic @ np.asarray(velocity, float) + bias) - bias)
 
 
 def orders(term, velocity, exact, *, coarse=100, fine=16):
@@ -73,7 +73,7 @@ def orders(term, velocity, exact, *, coarse=100, fine=16):
 
 
 def matrices(run):
-    """The matrices of a run, one a row, those of a product one after the other."""
+    """The matrices of a run, a row for each row, those of translations one after the other."""
     if "q_w" in run.names:
         return run.matrix
     if "x_1" in run.names:
@@ -132,10 +132,7 @@ def in_c(tmp_path):
 def test_a_pendulum_in_space(in_c):
     """The bounds of the energy over 1000 s by (3.13), as in Lee, Leok and McClamroch (2005), and the vertical momentum."""
     pendulum = ls.lagrangian("SO3", advected={"w": "down"}, l_d=f"{TRACE} + h * m * g * (w.dot(rho) + w.dot(F * rho)) / 2",
-                             J_d=[0.13, 0.28, 0.17], m=1, g=9.81, rho=[0, 0, 0.3], down=[0, 0, 1])
-    # Three numbers of a parameter that ends in `_d` are moments of the nonstandard inertia.
-    moments = np.array([0.13, 0.28, 0.17])
-    pendulum = pendulum.with_(J_d=np.diag(moments.sum() / 2 - moments))
+                             J_d=ls.nonstandard([0.13, 0.28, 0.17]), m=1, g=9.81, rho=[0, 0, 0.3], down=[0, 0, 1])
     run = pendulum.stepper(0.05).run(velocity=[4.14] * 3, until=1000)
     change = run.energy - run.energy[0]
     assert run.energy[0] == pytest.approx(2.027, abs=5e-4)
@@ -162,7 +159,7 @@ def test_geodesics_of_a_dense_metric(name, in_c):
     basis = BASES[name]
     K, velocity = metric(len(basis)), 0.9 * np.cos(np.arange(1.0, len(basis) + 1))
     term = ls.lagrangian(name, velocity="xi", discretise="trapezoid(Cayley)", l="xi.dot(K * xi) / 2", K=K)
-    orders(term, velocity, by_runge_kutta(basis, K, velocity)[1])
+    orders(term, velocity, free_motion(basis, K, velocity))
     in_c(term, velocity, 0.01)
 
 
@@ -171,7 +168,7 @@ def test_near_sub_riemannian_geodesics(thin, in_c):
     """On the Heisenberg group the third direction is all but forbidden."""
     K, velocity = np.diag([1.0, 1.0, 1 / thin]), [0.8, -0.6, 0.7 * thin]
     term = ls.lagrangian("Heisenberg", velocity="xi", discretise="trapezoid(Cayley)", l="xi.dot(K * xi) / 2", K=K)
-    exact = by_runge_kutta(BASES["Heisenberg"], K, velocity)[1]
+    exact = free_motion(BASES["Heisenberg"], K, velocity)
     orders(term, velocity, exact)
     by_eight = term.stepper(0.1, composition="Kahan-Li 8").run(velocity=velocity, until=1)
     assert np.linalg.norm(by_eight.velocity[-1] - exact) < 1e-10
@@ -190,12 +187,7 @@ def test_a_charged_body_in_a_field(in_c):
         omega = mu / J - 0.7 * w
         return np.array([np.cross(mu, omega) + 0.7 * np.cross(J * omega, w), np.cross(w, omega)])
 
-    now, h = np.array([J * (velocity + 0.7 * field), field]), 1 / 1000
-    for _ in range(1000):
-        a = rates(now)
-        b = rates(now + a * h / 2)
-        c = rates(now + b * h / 2)
-        now = now + (a + 2 * b + 2 * c + rates(now + c * h)) * h / 6
+    now = by_runge_kutta(rates, np.array([J * (velocity + 0.7 * field), field]), 1000)
     orders(term, velocity, now[0] / J - 0.7 * now[1])
     run = term.stepper(0.01).run(velocity=velocity, until=10)
     assert abs(run.spatial_momentum @ field - run.spatial_momentum[0] @ field).max() < 2e-14
@@ -207,7 +199,7 @@ def test_a_rod_with_a_curvature(in_c):
     K, own = metric(6), np.array([0.3, -0.2, 0.5, 0, 0, 1])
     velocity = [0.5, 0.1, 0.8, 0.1, -0.1, 1.2]
     term = ls.lagrangian("SE3", velocity="xi", discretise="trapezoid(Cayley)", l="(xi - u).dot(K * (xi - u)) / 2", K=K, u=own)
-    orders(term, velocity, by_runge_kutta(MOVES, K, velocity, bias=-K @ own)[1])
+    orders(term, velocity, free_motion(MOVES, K, velocity, -K @ own))
     in_c(term, velocity, 0.01)
 
 
@@ -254,7 +246,7 @@ def test_a_boat_that_is_pushed_forwards():
 
     ahead, aside = plan([1, 0], 100), plan([0.5, 0.3], 20, guess=0.01)
     assert ahead.converged and ahead.cost == pytest.approx(6 * 2**2 / 5**3, rel=2e-4)
-    assert aside.converged and abs(aside.force).max() > 0 and aside.cost > 6 * 2**2 * 0.5**2 / 5**3
+    assert aside.converged and aside.cost > 6 * 2**2 * 0.5**2 / 5**3
 
 
 def test_a_rigid_body_in_four_dimensions(in_c):
@@ -264,7 +256,7 @@ def test_a_rigid_body_in_four_dimensions(in_c):
     kinetic = np.array([[np.trace(a @ J @ b.T) for b in basis] for a in basis])
     velocity = 0.5 * np.cos(np.arange(1.0, 7))
     term = ls.lagrangian("SO4", generators=basis, J=J, l_d="((F - I) * J * (F - I).transpose()).trace() / (2 * h)")
-    orders(term, velocity, by_runge_kutta(basis, kinetic, velocity)[1])
+    orders(term, velocity, free_motion(basis, kinetic, velocity))
     run = term.stepper(0.01).run(velocity=velocity, until=10)
     first, last = (
         matrices(run)[at] @ np.tensordot(run.momentum[at], basis, 1) @ matrices(run)[at].T for at in (0, -1)
@@ -318,20 +310,14 @@ def test_an_incompressible_ellipsoid(in_c):
     term = ls.lagrangian("SL3", generators=basis, advected={"B": "metric"}, K=K, metric=ls.covariant(np.eye(3)),
                          l_d="(B * (F - I) * K * (F - I).transpose()).trace() / (2 * h)")
 
-    # A'' = −p A⁻ᵀ K⁻¹ … : the acceleration is tr-free in A⁻¹ A'', with a multiplier for the volume.
-    def rates(A, V):
-        back, inverse = np.linalg.inv(A), np.linalg.inv(K)
+    # A'' K = p A⁻ᵀ, with the pressure p that keeps the volume: tr(A⁻¹ A'') = tr (A⁻¹ A')².
+    def rates(now):
+        (A, V), inverse = now, np.linalg.inv(K)
+        back = np.linalg.inv(A)
         pressure = np.trace(back @ V @ back @ V) / np.trace(back @ back.T @ inverse)
-        return V, pressure * back.T @ inverse
+        return np.array([V, pressure * back.T @ inverse])
 
-    A, h = np.eye(3), 1 / 400
-    V = A @ np.tensordot(velocity, basis, 1)
-    for _ in range(400):
-        a = rates(A, V)
-        b = rates(A + a[0] * h / 2, V + a[1] * h / 2)
-        c = rates(A + b[0] * h / 2, V + b[1] * h / 2)
-        d = rates(A + c[0] * h, V + c[1] * h)
-        A, V = (x + (p + 2 * q + 2 * r + s) * h / 6 for x, p, q, r, s in zip((A, V), a, b, c, d, strict=True))
+    A, V = by_runge_kutta(rates, np.array([np.eye(3), np.tensordot(velocity, basis, 1)]))
     assert np.linalg.det(A) == pytest.approx(1, abs=1e-9)
     dual = np.linalg.pinv(np.reshape(basis, (8, 9)).T)
     orders(term, velocity, dual @ (np.linalg.inv(A) @ V).ravel())
@@ -356,8 +342,7 @@ def test_a_double_pendulum_by_its_angles(in_c):
     term = ls.lagrangian({"a": "R1", "b": "R1"}, velocity="u, v", discretise="trapezoid", g=9.81,
                          advected={"x": "a.seen_from(space)", "y": "b.seen_from(space)"},
                          l="u * u + v * v / 2 + u * v * (x - y).cos() + g * (2 * x.cos() + y.cos())")
-    x, y, h = np.pi / 2, 0.5, 1 / 2000
-    now = np.array([x, y, 0.0, 0.0])
+    x, y = np.pi / 2, 0.5
 
     def rates(now):
         x, y, u, v = now
@@ -365,11 +350,7 @@ def test_a_double_pendulum_by_its_angles(in_c):
         p, q = -v * v * sine - 2 * 9.81 * np.sin(x), u * u * sine - 9.81 * np.sin(y)
         return np.array([u, v, *np.array([p - cosine * q, 2 * q - cosine * p]) / (2 - cosine**2)])
 
-    for _ in range(2000):
-        a = rates(now)
-        b = rates(now + a * h / 2)
-        c = rates(now + b * h / 2)
-        now = now + (a + 2 * b + 2 * c + rates(now + c * h)) * h / 6
+    now = by_runge_kutta(rates, np.array([x, y, 0.0, 0.0]), 2000)
     start = [[[1, x], [0, 1]], [[1, y], [0, 1]]]
 
     def error(steps, **method):

@@ -58,6 +58,11 @@ def contravariant(value: Any) -> Carried:
     ----------
     value : array_like
         A vector, or a square matrix.
+
+    Raises
+    ------
+    DeclarationError
+        Another shape, or numbers that aren't real.
     """
     return _carried("contravariant", value, (1, 2), "what is contravariant is a vector or a square matrix")
 
@@ -69,6 +74,11 @@ def covariant(value: Any) -> Carried:
     ----------
     value : array_like
         A square matrix.
+
+    Raises
+    ------
+    DeclarationError
+        Another shape, or numbers that aren't real.
     """
     return _carried("covariant", value, (2,), "a covariant tensor is a square matrix")
 
@@ -80,6 +90,11 @@ def mixed(value: Any) -> Carried:
     ----------
     value : array_like
         A square matrix.
+
+    Raises
+    ------
+    DeclarationError
+        Another shape, or numbers that aren't real.
     """
     return _carried("mixed", value, (2,), "a mixed tensor is a square matrix")
 
@@ -235,7 +250,7 @@ class Sum:
 
     @property
     def numbers(self) -> Array:
-        """The numbers of all parameters, in the order of the C text."""
+        """The numbers of all parameters in one row, in the order of the C text; those of a matrix row by row."""
         return floats("numbers", [number for _, numbers in self._terms() for number in numbers], DeclarationError)
 
     def _terms(self) -> list[tuple[_native.Derivation, list[float]]]:
