@@ -167,17 +167,14 @@ fn made(stepper: &AnyStepper, state: &mut AnyState, steps: u64, inputs: &Inputs)
     match &inputs.torque {
         None if steps == 1 => stepper.step(state).map(drop).map_err(|error| Failure::step(&error)),
         None => in_stretches(steps, |stretch| stepper.run(state, stretch).map(drop)),
-        Some(torque) => in_stretches(steps, |stretch| {
-            (0..stretch).try_for_each(|_| stepper.step_forced(state, torque).map(drop))
-        }),
+        Some(torque) => {
+            in_stretches(steps, |stretch| (0..stretch).try_for_each(|_| stepper.step_forced(state, torque).map(drop)))
+        }
     }
 }
 
 /// Makes steps in stretches, with a look for Ctrl-C behind each.
-fn in_stretches(
-    mut steps: u64,
-    mut make: impl FnMut(u64) -> Result<(), liestep::StepError>,
-) -> Result<(), Failure> {
+fn in_stretches(mut steps: u64, mut make: impl FnMut(u64) -> Result<(), liestep::StepError>) -> Result<(), Failure> {
     let signals = (steps > LOOK).then(Signals::new);
     while steps > 0 {
         let stretch = steps.min(LOOK);
@@ -193,16 +190,12 @@ fn in_stretches(
 }
 
 /// Adds a vector to the force on a body, from this component on.
-fn on_body(
-    system: &System,
-    name: &str,
-    (numbers, first): (&[f64], usize),
-    forces: &mut [f64],
-) -> Result<(), Failure> {
+fn on_body(system: &System, name: &str, (numbers, first): (&[f64], usize), forces: &mut [f64]) -> Result<(), Failure> {
     let Some(body) = system.names().position(|own| own == name) else {
         let listed = |names: Vec<&str>| names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         let (bodies, joints) = (listed(system.names().collect()), listed(system.joint_names().collect()));
-        let joints = if joints.is_empty() { "none of its joints has a `name`".to_owned() } else { format!("joints {joints}") };
+        let joints =
+            if joints.is_empty() { "none of its joints has a `name`".to_owned() } else { format!("joints {joints}") };
         return refused(&format!("there is no `{name}`: there are the bodies {bodies}, and {joints}"));
     };
     let &[x, y, z] = numbers else {

@@ -1,7 +1,7 @@
 //! Steps with inputs: forces and other values of parameters, and the derivatives of a step by state and force.
 
-use liestep::StepError;
 use liestep::__private::forced;
+use liestep::StepError;
 use liestep::motion::{Propagator, StepReport};
 
 use super::stepper::Whole;

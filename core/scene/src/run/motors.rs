@@ -26,7 +26,8 @@ fn motion_of(body: Option<usize>, attitude: &[f64], velocity: &[f64]) -> BodyMot
         let none = Vector3::zeros();
         return BodyMotion { attitude: Matrix3::identity(), position: none, turning: none, moving: none };
     };
-    let vector = |numbers: &[f64], first: usize, step: usize| Vector3::from_fn(|row, _| at(numbers, first + step * row));
+    let vector =
+        |numbers: &[f64], first: usize, step: usize| Vector3::from_fn(|row, _| at(numbers, first + step * row));
     BodyMotion {
         attitude: Matrix3::from_fn(|row, column| at(attitude, ENTRIES * body + 3 * row + column)),
         // The last column of a matrix with four rows.
