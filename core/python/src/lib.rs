@@ -1,6 +1,6 @@
 //! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
 //!
-//! `lib → {control, picture, file → state} → scene → ensemble → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
+//! `lib → {control, picture, file → state} → scene → {signal, ensemble} → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
 //! declares is stepped by any method, recorded into columns that `NumPy` and Arrow look at where they are, or drawn at random.
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
@@ -13,6 +13,7 @@ mod method;
 mod picture;
 mod run;
 mod scene;
+mod signal;
 mod start;
 mod state;
 mod table;
@@ -30,6 +31,7 @@ use crate::ensemble::{Draws, Members};
 use crate::failure::Failure;
 use crate::method::{Names, method};
 use crate::run::{Course, RunRecord};
+use crate::signal::{Change, Signal};
 use crate::start::{Start, started};
 use crate::state::{Source, State};
 use crate::table::{Table, View};
@@ -108,9 +110,9 @@ struct Scene(scene::Scene);
 #[pymethods]
 impl Scene {
     #[new]
-    fn new(py: Python<'_>, terms: Vec<Term<'_>>) -> PyResult<Self> {
+    fn new(py: Python<'_>, terms: Vec<Term<'_>>, changes: Vec<Change>) -> PyResult<Self> {
         let (terms, numbers) = apart(terms);
-        Ok(Self(py.detach(|| scene::scene(&terms, &numbers))?))
+        Ok(Self(py.detach(|| scene::scene(&terms, &numbers, changes))?))
     }
 
     #[getter]
@@ -238,7 +240,7 @@ fn share(text: &str) -> PyResult<(u64, u64)> {
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::{Derivation, Scene, State, Table, View, order, plan, schemes, share};
+    use super::{Derivation, Scene, Signal, State, Table, View, order, plan, schemes, share};
     #[pymodule_export]
     use crate::file::{File, FileRun, library};
     #[pymodule_export]

@@ -46,16 +46,33 @@ impl Source {
 
     /// The stepper of this thread.
     fn stepper(self: &Arc<Self>) -> Result<AnyStepper, Failure> {
+        let known = KNOWN.with_borrow_mut(|known| {
+            let place = known.iter().position(|(own, _)| Arc::ptr_eq(own, self))?;
+            known.swap(0, place);
+            Some(known[0].1.clone())
+        });
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        // A signal's function may step other states.
+        let made = self.make()?;
         KNOWN.with_borrow_mut(|known| {
-            match known.iter().position(|(own, _)| Arc::ptr_eq(own, self)) {
-                Some(place) => known.swap(0, place),
-                None => {
-                    known.truncate(STEPPERS - 1);
-                    known.insert(0, (Arc::clone(self), self.make()?));
-                }
-            }
-            Ok(known[0].1.clone())
-        })
+            known.truncate(STEPPERS - 1);
+            known.insert(0, (Arc::clone(self), made.clone()));
+        });
+        Ok(made)
+    }
+
+    /// Forgets the cause of an earlier failure.
+    fn forget(&self) {
+        if let Self::Declared(scene, _) = self {
+            scene.forget();
+        }
+    }
+
+    /// A failure, by its cause where that is a signal without a value.
+    fn caused(&self, failure: Failure) -> Failure {
+        if let Self::Declared(scene, _) = self { scene.caused(failure) } else { failure }
     }
 }
 
@@ -96,7 +113,7 @@ impl State {
 
     /// The stepper and the state.
     fn now(&self) -> Result<(AnyStepper, AnyState), Failure> {
-        self.of_numbers(&*self.lock()?)
+        self.of_numbers(&self.lock()?)
     }
 
     fn of_numbers(&self, numbers: &[f64]) -> Result<(AnyStepper, AnyState), Failure> {
@@ -127,6 +144,9 @@ impl State {
             let Source::Declared(scene, method) = &*self.source else {
                 return refused("parameters of a file's scene are those of the file");
             };
+            if scene.has_changes() {
+                return refused("terms with a signal have their values from it: leave `given` out");
+            }
             let (driven, before) = (scene.with(given, *method)?, state.steps());
             let mut next = counted(&driven, &driven.adopt(&state), before)?;
             made(&driven, &mut next, steps, inputs)?;
@@ -233,10 +253,9 @@ impl State {
         numbers: Option<Vec<f64>>,
     ) -> PyResult<()> {
         let inputs = Inputs { torque: torque.map(|torque| vector("torque", &torque)).transpose()?, numbers };
-        if steps == 1 {
-            return Ok(self.make(1, &inputs)?);
-        }
-        Ok(py.detach(|| self.make(steps, &inputs))?)
+        self.source.forget();
+        let made = if steps == 1 { self.make(1, &inputs) } else { py.detach(|| self.make(steps, &inputs)) };
+        Ok(made.map_err(|failure| self.source.caused(failure))?)
     }
 
     /// The forces on all bodies of efforts by the names of joints, and of torques and of forces by the names of bodies.
@@ -324,7 +343,8 @@ impl State {
     #[getter]
     fn advected(&self) -> PyResult<Vec<f64>> {
         let Source::Declared(scene, _) = &*self.source else { return Ok(Vec::new()) };
-        Ok(scene.seen(&self.lock()?)?)
+        let (stepper, state) = self.now()?;
+        Ok(scene.seen(state.numbers(), stepper.time(&state))?)
     }
 
     #[getter]

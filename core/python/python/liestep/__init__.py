@@ -17,6 +17,7 @@ from ._library import (
     body, dipole, drag, gravity, gravity_gradient, magnetic_damping, nonstandard, rotor, spring, thrust, torque,
 )
 from ._run import Columns, Happenings, Run, Scene, SceneRun, scene
+from ._signal import Signal, signal
 from ._state import State
 from ._stepper import Stepper, euler, schemes, translation
 from ._term import Term, force, lagrangian
@@ -26,7 +27,7 @@ __version__ = "0.1.0"
 __all__ = [
     "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Plan", "Run", "Scene",
     "SceneError", "SceneRun",
-    "SetupError", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
+    "SetupError", "Signal", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
     "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "mixed",
-    "nonstandard", "normal", "point", "rotation", "rotor", "scene", "schemes", "spring", "thrust", "torque", "translation", "uniform",
+    "nonstandard", "normal", "point", "rotation", "rotor", "scene", "schemes", "signal", "spring", "thrust", "torque", "translation", "uniform",
 ]

@@ -12,6 +12,7 @@ from . import _native
 from ._arrays import floats, number, whole
 from ._declared import Sum
 from ._run import Run
+from ._signal import Signal
 from ._state import State
 from .errors import Error, SetupError, StepError
 
@@ -154,6 +155,14 @@ def _course(until: Any, every: Any, times: Any, events: Mapping[str, str] | None
     return _Course(_end(until, asked.tolist(), step), 0, asked.tolist(), watched)
 
 
+def _reaches(term: Sum, until: float) -> None:
+    """Looks whether all signals have values from the start to the end of a run."""
+    for name, signal in term._signals().items():
+        first, last = signal.ends
+        if first > min(0.0, until) or last < max(0.0, until) * (1 - 1e-9):
+            raise SetupError(f"`{name}` has values from {first:g} s to {last:g} s, and a run goes from 0 to {until:g} s")
+
+
 def _start(attitude: Any, velocity: Any) -> _Start:
     import numpy as np
 
@@ -185,6 +194,8 @@ class Stepper:
         Whether what rounding takes from sums is added to the next.
     substeps : int
         Into how many parts a step is divided at most that has no solution.
+
+    Beside a `liestep.signal` there are the declared step and a composition of it.
 
     Examples
     --------
@@ -301,6 +312,8 @@ class Stepper:
     def _given(self, parameters: Mapping[str, Any]) -> list[float]:
         if not isinstance(parameters, Mapping):
             raise SetupError(f'`given` are values by the names of parameters, as {{"m": 2.0}}, not {parameters!r:.80}')
+        if any(isinstance(value, Signal) for value in parameters.values()):
+            raise SetupError("`given` are values: a signal is a parameter of the term, as in `term.with_(m=ls.signal(…))`")
         return [number for _, numbers in self.term.with_(**parameters)._terms() for number in numbers]
 
     def _course(self, until: Any, every: Any, times: Any, events: Any) -> _Course:
@@ -308,6 +321,7 @@ class Stepper:
         return _course(until, 1 if every is None else every, times, events, self.step if are_equal else None)
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
+        _reaches(self.term, course.until)
         made = self._native.run(self.step, self.method, start, course)
         return _finished(self.term, self.step, made, names, self._about(), _Estimate(self, start, course.until))
 
@@ -426,7 +440,7 @@ class _Search(Stepper):
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
         scene = self.term._scene()
-        if not scene.is_self_adjoint:
+        if not scene.is_self_adjoint or self.term._signals():
             return self._by_own_steps(start, course, names)
         made = scene.ask(self.tolerance, start, course)
         kind, name = made["method"]

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ._arrays import floats
+from ._signal import Signal
 from .errors import SceneError
 
 #: Tables in tables beyond it are no scene.
@@ -46,6 +47,8 @@ def _value(name: str, value: Any, depth: int) -> str:
         if not -(2**63) <= value < 2**63:
             raise SceneError(f"`{name}` is a number, not {value!r:.80}")
         return str(value)
+    if isinstance(value, Signal):
+        return _value(name, value.table(), depth)
     if isinstance(value, Mapping):
         return "{ " + ", ".join(f"{_text(key)} = {_value(f'{name}.{key}', one, depth + 1)}" for key, one in value.items()) + " }"
     if isinstance(value, Sequence) and not isinstance(value, (bytes, bytearray, memoryview)):
