@@ -45,21 +45,21 @@ fn as_text() -> Result<Late<SO3, Vector3<f64>, WithKinetic, Machine>, Error> {
 }
 
 fn main() -> Result<(), Error> {
-    let (identity, velocity) = (SO3::identity(), Vector3::new(0.5, 2.0, 12.0));
+    let (identity, velocity) = ([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], Vector3::new(0.5, 2.0, 12.0));
     let given: Vec<String> = std::env::args().skip(1).collect();
     match given.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["bits"] => {
             let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
             let top = HeavyTop { J_d, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
             let stepper = Stepper::new(top, 0.01)?;
-            let mut state = stepper.start(identity, velocity)?;
+            let mut state = stepper.start(SO3::identity(), velocity)?;
             stepper.run(&mut state, 1000)?;
             state.momentum().iter().for_each(|number| println!("{:#018x}", number.to_bits()));
         }
         ["steps"] => {
             let begun = Instant::now();
             let stepper = Stepper::new(as_text()?, 0.01)?.into_any();
-            let mut state = stepper.start(identity, velocity)?;
+            let mut state = stepper.start(&identity, velocity.as_slice())?;
             let mut recorder = Recorder::new(&stepper, liestep::recording::Csv::new(Vec::new()));
             stepper.observed(&mut state).every(1000, |now| recorder.record(now)).steps(1_000_000)?;
             println!("{:.4}", begun.elapsed().as_secs_f64());
@@ -70,7 +70,7 @@ fn main() -> Result<(), Error> {
                 let stepper = Stepper::new(top.clone(), 0.01)?.into_any();
                 let velocity = [0.0, 0.0, 12.0].iter().enumerate();
                 let velocity = velocity.map(|(k, mean)| member.normal(&format!("velocity.{}", k + 1), *mean, 0.1));
-                let state = stepper.start(identity, Vector3::from_iterator(velocity))?;
+                let state = stepper.start(&identity, &velocity.collect::<Vec<_>>())?;
                 Ok((stepper, state))
             };
             let begun = Instant::now();
@@ -78,10 +78,10 @@ fn main() -> Result<(), Error> {
             let columns = (0..17).map(|column| format!("column_{column}")).collect::<Vec<_>>();
             let columns = columns.iter().map(String::as_str).collect::<Vec<_>>();
             let ensemble = Ensemble::one_by_one("tops", 100_000, 100, make).seed(7).keep_named(&columns, |run, row| {
-                let (velocity, energy) = run.stepper.velocity_and_energy(run.state, None);
+                let (velocity, energy) = (run.stepper.velocity(run.state), run.stepper.energy(run.state));
                 let (attitude, momentum) = (run.state.attitude(), run.state.momentum());
-                let numbers = std::iter::once(run.stepper.time(run.state)).chain(attitude.as_matrix().iter().copied());
-                let numbers = numbers.chain(velocity.iter().copied()).chain(momentum.iter().copied());
+                let numbers = std::iter::once(run.stepper.time(run.state)).chain(attitude.iter().copied());
+                let numbers = numbers.chain(velocity).chain(momentum.iter().copied());
                 row.iter_mut().zip(numbers.chain([energy])).for_each(|(place, number)| *place = number);
             });
             ensemble.run(&Local::threads(1), &Store::folder(folder)?)?;
