@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::sync::{Arc, Mutex, MutexGuard, TryLockError};
 
-use liestep::motion::{AnyState, AnyStepper, FactorKind, Integrator as _};
+use liestep::motion::{AnyState, AnyStepper, Integrator as _};
 use liestep::with::Method;
 use liestep_scene::System;
 use pyo3::intern;
@@ -308,12 +308,10 @@ impl State {
         Ok(self.lock()?.clone())
     }
 
-    /// For each factor of the group the rows of its matrices, and whether they are rotations of space.
+    /// For each factor of the group the rows of its matrices.
     #[getter]
-    fn factors(&self) -> PyResult<Vec<(usize, bool)>> {
-        let stepper = self.source.stepper()?;
-        let factors = stepper.layout().factors.iter();
-        Ok(factors.map(|factor| (factor.kind.rows(), factor.kind == FactorKind::Rotation)).collect())
+    fn factors(&self) -> PyResult<Vec<usize>> {
+        Ok(self.source.stepper()?.layout().factors.iter().map(|factor| factor.kind.rows()).collect())
     }
 
     #[getter]

@@ -13,6 +13,7 @@ from . import errors
 from ._control import Control, Plan
 from ._declared import contravariant, covariant, mixed, point
 from ._ensemble import Ensemble, Many, Spread, normal, rotation, uniform
+from ._event import Moment
 from ._library import (
     body, dipole, drag, gravity, gravity_gradient, magnetic_damping, nonstandard, rotor, spring, thrust, torque,
 )
@@ -25,8 +26,8 @@ from .errors import ColumnError, DeclarationError, Error, SceneError, SetupError
 
 __version__ = "0.1.0"
 __all__ = [
-    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Plan", "Run", "Scene",
-    "SceneError", "SceneRun",
+    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Moment", "Plan", "Run",
+    "Scene", "SceneError", "SceneRun",
     "SetupError", "Signal", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
     "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "mixed",
     "nonstandard", "normal", "point", "rotation", "rotor", "scene", "schemes", "signal", "spring", "thrust", "torque", "translation", "uniform",

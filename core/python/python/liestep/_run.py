@@ -246,7 +246,10 @@ class Run(Motion):
         return np.asarray(np.einsum("nij,nj->ni", self.matrix, self.momentum))
 
     def plot(self, axes: Any = None) -> Any:
-        """Velocity and energy over time, by matplotlib; returns the axes."""
+        """Velocity and energy over time, by matplotlib, on two axes if they are given; returns the figure.
+
+        ``run.plot().savefig("run.png")`` saves it.
+        """
         import matplotlib.pyplot as plt
 
         if axes is None:
@@ -256,7 +259,7 @@ class Run(Motion):
         axes[0].legend(loc="upper right")
         axes[1].semilogy(self.time, abs(self.energy - self.energy[0]).clip(min=2.0**-52 * abs(self.energy[0])))
         axes[1].set(xlabel="time, s", ylabel="energy from its start")
-        return axes
+        return axes[0].figure
 
     def html(self, path: str | Path | None = None) -> str:
         """The page that plays a motion on SO(3) in a browser; written to a file, if one is given."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _native
@@ -205,3 +205,11 @@ def diagonal(moments: Array) -> Array:
     import numpy as np
 
     return moments[..., None] * np.eye(moments.shape[-1])
+
+
+def reach(signals: Mapping[str, Signal], until: float) -> None:
+    """Looks whether all signals have values from the start to the end of a run."""
+    for name, signal in signals.items():
+        first, last = signal.ends
+        if first > min(0.0, until) or last < max(0.0, until) * (1 - 1e-9):
+            raise SetupError(f"`{name}` has values from {first:g} s to {last:g} s, and a run goes from 0 to {until:g} s")

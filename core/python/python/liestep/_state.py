@@ -150,11 +150,7 @@ class State:
     @property
     def attitude(self) -> Any:
         """The attitude, as `liestep.Stepper.start` takes it: a matrix, body to space; on a product a list of matrices."""
-        entries, matrices, first = _array(self._native.attitude), [], 0
-        for rows, _ in self._native.factors:
-            matrices.append(entries[first : first + rows * rows].reshape(rows, rows))
-            first += rows * rows
-        return matrices if len(matrices) > 1 else matrices[0]
+        return matrices(self._native.attitude, self._native.factors)
 
     @property
     def bodies(self) -> dict[str, BodyState]:
@@ -219,6 +215,15 @@ def _named(name: str, values: Any) -> _native.Named:
             return []
         raise SetupError(f'`{name}` of several bodies is by names, as {{"elbow": 0.3}}, not {values!r:.80}')
     return [(text(name, key), floats(name, value, SetupError).ravel().tolist()) for key, value in values.items()]
+
+
+def matrices(numbers: list[float], rows: list[int]) -> Any:
+    """The matrices of an attitude, or the one that there is."""
+    entries, found, first = _array(numbers), [], 0
+    for row in rows:
+        found.append(entries[first : first + row * row].reshape(row, row))
+        first += row * row
+    return found if len(found) > 1 else found[0]
 
 
 def _array(numbers: list[float]) -> Array:

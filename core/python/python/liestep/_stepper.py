@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import ceil, hypot, inf, isfinite
 from typing import Any
@@ -11,8 +10,9 @@ from typing import Any
 from . import _native
 from ._arrays import floats, number, whole
 from ._declared import Sum
+from ._event import Moment, Watch, watch
 from ._run import Run
-from ._signal import Signal
+from ._signal import Signal, reach
 from ._state import State
 from .errors import Error, SetupError, StepError
 
@@ -90,20 +90,6 @@ def translation(shift: Any) -> Any:
     return matrix
 
 
-_EVENT = re.compile(
-    r"\s*(?P<of>\w+)\s*(?P<sign>[<>]|=)\s*(?P<value>[-+]?[\d.]+(?:e[-+]?\d+)?)\s*(?P<unit>deg|rad|rpm)?\s*(?P<stop>,\s*stop)?\s*"
-)
-_UNITS = {None: 1.0, "rad": 1.0, "deg": 0.017453292519943295, "rpm": 0.10471975511965977}
-
-
-@dataclass
-class _Watch:
-    quantity: str
-    value: float
-    direction: int
-    stops: bool
-
-
 @dataclass
 class _Start:
     attitude: list[float]
@@ -116,15 +102,7 @@ class _Course:
     until: float
     every: int
     times: list[float] | None
-    events: list[_Watch]
-
-
-def _watch(text: Any) -> _Watch:
-    found = _EVENT.fullmatch(text) if isinstance(text, str) else None
-    if found is None:
-        raise SetupError(f'{text!r} is no event: write "tilt > 60 deg", "energy < 3", "velocity_x = 0, stop"')
-    direction = {">": 1, "<": -1, "=": 0}[found["sign"]]
-    return _Watch(found["of"], float(found["value"]) * _UNITS[found["unit"]], direction, bool(found["stop"]))
+    events: list[Watch]
 
 
 def _end(until: Any, times: list[float] | None, step: float | None) -> float:
@@ -142,25 +120,20 @@ def _end(until: Any, times: list[float] | None, step: float | None) -> float:
     return end
 
 
-def _course(until: Any, every: Any, times: Any, events: Mapping[str, str] | None, step: float | None) -> _Course:
+def _course(until: Any, every: Any, times: Any, events: Mapping[str, Any] | None, step: float | None) -> _Course:
     whole("every", every, 1, 2**63 - 1)
     if events is not None and not isinstance(events, Mapping):
         raise SetupError(f'`events` are texts by names, as {{"low": "tilt > 60 deg"}}, not {events!r:.80}')
-    watched = [_watch(text) for text in (events or {}).values()]
+    watched = [watch(text) for text in (events or {}).values()]
     if times is None:
         return _Course(_end(until, None, step), every, None, watched)
     asked = floats("times", times, SetupError)
     if asked.ndim != 1:
         raise SetupError(f"`times` is a list of times, not an array of shape {asked.shape}")
+    lengths = asked[1:] - asked[:-1]
+    if (lengths > 0).any() and (lengths < 0).any():
+        raise SetupError("`times` are in their order, and some come after a later one: sort them")
     return _Course(_end(until, asked.tolist(), step), 0, asked.tolist(), watched)
-
-
-def _reaches(term: Sum, until: float) -> None:
-    """Looks whether all signals have values from the start to the end of a run."""
-    for name, signal in term._signals().items():
-        first, last = signal.ends
-        if first > min(0.0, until) or last < max(0.0, until) * (1 - 1e-9):
-            raise SetupError(f"`{name}` has values from {first:g} s to {last:g} s, and a run goes from 0 to {until:g} s")
 
 
 def _start(attitude: Any, velocity: Any) -> _Start:
@@ -247,7 +220,7 @@ class Stepper:
         until: float | None = None,
         every: int | None = None,
         times: Any = None,
-        events: Mapping[str, str] | None = None,
+        events: Mapping[str, str | Callable[[Moment], Any]] | None = None,
     ) -> Run:
         """Makes the steps to a time, and records them.
 
@@ -265,7 +238,8 @@ class Stepper:
         times : array_like, optional
             The times of the rows instead, s, between the steps too; without `until` the last of them is the end.
         events : mapping, optional
-            Names, and what is looked for: ``"tilt > 60 deg"``, ``"velocity_x = 0"``; with ``", stop"`` it ends the run.
+            Names, and what is looked for: ``"tilt > 60 deg"``, ``"velocity_x = 0"``; with ``", stop"`` it ends the run. Or a
+            function of a `liestep.Moment` that passes zero there; its attributes ``direction`` and ``terminal`` are SciPy's.
 
         Returns
         -------
@@ -321,7 +295,7 @@ class Stepper:
         return _course(until, 1 if every is None else every, times, events, self.step if are_equal else None)
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
-        _reaches(self.term, course.until)
+        reach(self.term._signals(), course.until)
         made = self._native.run(self.step, self.method, start, course)
         return _finished(self.term, self.step, made, names, self._about(), _Estimate(self, start, course.until))
 
