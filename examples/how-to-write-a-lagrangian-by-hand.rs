@@ -8,7 +8,7 @@ use std::error::Error;
 
 use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::CayleyRetraction;
-use liestep::mechanics::{DiscreteLagrangian, Effect, Limit, Parts, SceneVisitor, Term, WithKinetic};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Facts, Limit, Parts, SceneVisitor, Term, WithKinetic};
 use liestep::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 
@@ -74,10 +74,13 @@ impl Effect for Body {
     /// The right-hand side `(h/2) a`.
     type StepTerms = Vector3<f64>;
 
-    const PARTS: Parts = Parts { unknown: true, kick_before: false, kick_after: false };
-    const DENOMINATORS: u32 = 1;
-    const INERTIA_IS_CONSTANT: bool = true;
-    const IS_QUADRATIC: bool = true;
+    const FACTS: Facts = Facts {
+        parts: Parts { unknown: true, kick_before: false, kick_after: false },
+        denominators: 1,
+        has_constant_inertia: true,
+        is_quadratic: true,
+        ..Facts::ANY
+    };
     const DERIVATION: &'static str = "the free rigid body (3.13), by hand";
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {

@@ -15,7 +15,7 @@ pub use crate::groups::{CayleyRetraction, Configuration, Relative, Retraction, S
 pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor};
 pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
 pub use crate::mechanics::{
-    ContinuousLagrangian, DiscreteLagrangian, Effect, Force, LeftInvariant, Legendre, Limit, Operations, Parts,
+    ContinuousLagrangian, DiscreteLagrangian, Effect, Facts, Force, LeftInvariant, Legendre, Limit, Operations, Parts,
     SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, StepPoint, Sum, Term, WithKinetic, WithoutKinetic,
 };
 pub use crate::methods::{Constraint, Place, Slope};

@@ -127,5 +127,5 @@ fn energy<L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(
 ) -> f64 {
     let rates =
         lagrangian.inertia(&lagrangian.advected()).lu().solve(momentum).unwrap_or_else(|| Vector3::repeat(f64::NAN));
-    0.5 * rates.dot(momentum) + lagrangian.potential(w)
+    0.5 * rates.dot(momentum) - lagrangian.limit(None, w).l
 }

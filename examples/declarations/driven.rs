@@ -66,7 +66,7 @@ fn orbit(output: &mut Output) -> Result<String, Failure> {
         let t = f64::from(step) * h;
         let seen = state.attitude().as_matrix().transpose() * planet(t);
         let kinetic = 0.5 * stepper.velocity(&state).dot(&state.momentum());
-        let jacobi = kinetic + stepper.scene().potential(&((), seen)) - RATE * state.spatial_momentum().z;
+        let jacobi = kinetic - stepper.scene().limit(None, &((), seen)).l - RATE * state.spatial_momentum().z;
         let turns = RATE * t / core::f64::consts::TAU;
         // The angle of the body's first axis from the vertical, in the plane of the orbit.
         pitch.push((turns, seen.y.atan2(-seen.x).to_degrees()));

@@ -3,7 +3,7 @@
 use core::cell::Cell;
 
 use liestep::mechanics::{
-    DiscreteLagrangian, Effect, Group, Limit, Matrix, Parts, Scalar, SceneVisitor, SecondDerivatives, Square,
+    DiscreteLagrangian, Effect, Facts, Group, Limit, Matrix, Scalar, SceneVisitor, SecondDerivatives, Square,
     StepDerivatives, StepPoint, Term, Vector, WithKinetic,
 };
 
@@ -43,15 +43,18 @@ macro_rules! declared_as {
     };
 }
 
-/// The stages that don't depend on the solver.
-macro_rules! staged_as {
-    ($inner:ty) => {
-        type Retraction = <$inner as Effect>::Retraction;
+/// The wrapped Lagrangian's stages and constants, so that only the Newton system differs.
+macro_rules! solved_as {
+    ($L:ident) => {
+        type Constants = $L::Constants;
+        type StepTerms = $L::StepTerms;
 
-        const PARTS: Parts = <$inner>::PARTS;
-        const INERTIA_IS_CONSTANT: bool = <$inner>::INERTIA_IS_CONSTANT;
-        const IS_QUADRATIC: bool = <$inner>::IS_QUADRATIC;
-        const DERIVATION: &'static str = <$inner>::DERIVATION;
+        type Kinetic = WithKinetic;
+
+        type Retraction = $L::Retraction;
+
+        const FACTS: Facts = $L::FACTS;
+        const DERIVATION: &'static str = $L::DERIVATION;
 
         of_inner! {
             fn describe(visitor: &mut dyn SceneVisitor<Self::Scalar>);
@@ -62,20 +65,6 @@ macro_rules! staged_as {
             let Limit { l, momentum, hessian } = self.0.limit(velocity, w);
             Limit { l, momentum, hessian }
         }
-    };
-}
-
-/// The wrapped Lagrangian's stages and constants, so that only the Newton system differs.
-macro_rules! solved_as {
-    ($L:ident) => {
-        type Constants = $L::Constants;
-        type StepTerms = $L::StepTerms;
-
-        const DENOMINATORS: u32 = $L::DENOMINATORS;
-
-        type Kinetic = WithKinetic;
-
-        staged_as!($L);
 
         fn constants(&self, h: Self::Scalar) -> Self::Constants {
             self.0.constants(h)

@@ -169,7 +169,7 @@ fn the_jacobi_integral_of_an_orbit_stays() {
     let integral = |state: &liestep::State<SO3, ((), Vector3<f64>)>, t: f64| {
         let velocity = stepper.velocity(state);
         let seen = state.attitude().as_matrix().transpose() * planet(t);
-        0.5 * velocity.dot(&state.momentum()) + scene.potential(&((), seen)) - RATE * state.spatial_momentum().z
+        0.5 * velocity.dot(&state.momentum()) - scene.limit(None, &((), seen)).l - RATE * state.spatial_momentum().z
     };
     let first = integral(&state, 0.0);
     let (mut early, mut late) = (0.0_f64, 0.0_f64);

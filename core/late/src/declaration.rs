@@ -7,11 +7,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 
 use liestep::SetupError;
 use liestep::mechanics::Parts;
-use liestep::numbers::{Blocks, Coordinates as _, Real, real};
-use liestep_derivation::{
-    Action, Array, Carried, MOST_WORK, ParameterKind, Program, Refusal, StagedDeclaration, Stages, staged,
-};
-use nalgebra::Vector1;
+use liestep_derivation::{MOST_WORK, ParameterKind, Program, Refusal, StagedDeclaration, Stages, staged};
 use proc_macro2::{LexError, TokenStream};
 
 use crate::code::Backend;
@@ -23,7 +19,6 @@ use crate::sum::summed;
 pub struct Declaration {
     staged: StagedDeclaration,
     pub(crate) parts: Parts,
-    pub(crate) apart: Blocks,
     /// The code of the programs by each back end.
     made: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
 }
@@ -37,63 +32,26 @@ impl Deref for Declaration {
     }
 }
 
-/// A value in space.
-#[derive(Clone, Copy)]
-pub(crate) enum InSpace {
-    /// The value of the parameter with this number.
-    Parameter(usize),
-    /// The unit vector with this number.
-    Direction(usize),
-    Identity,
-}
-
 #[derive(Debug)]
 pub(crate) struct Ready<C> {
     pub(crate) code: C,
     pub(crate) outputs: usize,
-    /// A bit for each array that the program reads.
-    arrays: u16,
 }
-
-impl<C> Ready<C> {
-    #[inline]
-    pub(crate) const fn reads(&self, array: Array) -> bool {
-        self.arrays >> array as u16 & 1 == 1
-    }
-
-    /// Whether the program reads constants alone: its outputs don't change.
-    pub(crate) const fn reads_constants_alone(&self) -> bool {
-        self.arrays & !(1 << Array::Constants as u16) == 0
-    }
-}
-
-/// Finite in all lanes.
-pub(crate) fn is_finite<T: Real>(number: &T) -> bool {
-    Vector1::new(*number).is_finite()
-}
-
-/// All programs of a declaration, ready to run.
-pub(crate) type All<C> = Arc<Stages<Ready<C>>>;
-
-/// The programs of the derivatives of a step.
-pub(crate) type Derivatives<C> = Arc<[Ready<C>; 4]>;
 
 /// The programs as code of a back end.
-pub(crate) fn ready<T: Real, B: Backend<T>>(programs: &Stages<Program>) -> Result<Stages<Ready<B::Code>>, LateError> {
+pub(crate) fn ready<B: Backend<f64>>(programs: &Stages<Program>) -> Result<Stages<Ready<B::Code>>, LateError> {
     let mut list = Vec::new();
     programs.try_map(|program| {
         list.push(program);
         Ok::<_, LateError>(())
     })?;
-    let mut each = ready_each::<T, B>(&list)?.into_iter();
+    let mut each = ready_each::<B>(&list)?.into_iter();
     programs.try_map(|_| each.next().ok_or(LateError::TooLarge))
 }
 
-pub(crate) fn ready_each<T: Real, B: Backend<T>>(programs: &[&Program]) -> Result<Vec<Ready<B::Code>>, LateError> {
-    let arrays = |program: &Program| program.inputs.iter().fold(0, |arrays, source| arrays | 1 << source.array as u16);
-    let codes = B::codes(programs)?.into_iter();
-    let each = codes.zip(programs);
-    Ok(each.map(|(code, program)| Ready { code, outputs: program.outputs.len(), arrays: arrays(program) }).collect())
+pub(crate) fn ready_each<B: Backend<f64>>(programs: &[&Program]) -> Result<Vec<Ready<B::Code>>, LateError> {
+    let each = B::codes(programs)?.into_iter().zip(programs);
+    Ok(each.map(|(code, program)| Ready { code, outputs: program.outputs.len() }).collect())
 }
 
 /// A longer text is no Lagrangian that a person has typed.
@@ -105,7 +63,7 @@ const MOST: usize = 10_000;
 static KEPT: LazyLock<Mutex<BTreeMap<String, &'static Declaration>>> = LazyLock::new(Mutex::default);
 
 /// The number of stored declarations, sums among them. A text is derived and stored once, however often it is declared, and
-/// a sum once for each order of its terms; a process may store 10,000. One of a body takes 43 kB, which the ignored test in
+/// a sum once for each order of its terms; a process may store 10,000. One of a body takes 25 kB, which the ignored test in
 /// `core/late/tests/hostile.rs` measures.
 #[must_use]
 pub fn kept() -> usize {
@@ -160,24 +118,10 @@ impl Declaration {
         if let [only] = terms {
             return Ok(only);
         }
-        Self::summed(terms, false)
-    }
-
-    /// The [`sum`](Self::sum) that carries the directions of space, `g^T e_i` of each factor, and each configuration once:
-    /// all vectors are made of them, so that the sum carries the same, however many there are. Both sums differ by roundings.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`sum`](Self::sum).
-    pub fn sum_in_frames(terms: &[&'static Self]) -> Result<&'static Self, LateError> {
-        Self::summed(terms, true)
-    }
-
-    fn summed(terms: &[&'static Self], in_frames: bool) -> Result<&'static Self, LateError> {
         // Addresses identify declarations.
         let places: Vec<*const Self> = terms.iter().map(|&term| &raw const *term).collect();
         let terms: Vec<&StagedDeclaration> = terms.iter().map(|term| &term.staged).collect();
-        Self::kept(&format!("{places:?}, {in_frames}"), || summed(&terms, in_frames))
+        Self::kept(&format!("{places:?}"), || summed(&terms))
     }
 
     /// The stored declaration of this name, or a new one.
@@ -219,21 +163,10 @@ impl Declaration {
 
     fn of(staged: StagedDeclaration) -> Self {
         let [unknown, kick_before, kick_after] = staged.parts;
-        let apart = staged.blocks.iter().fold(Blocks::WHOLE, |blocks, &end| blocks.then(end, Blocks::WHOLE));
-        Self { parts: Parts { unknown, kick_before, kick_after }, apart, made: Mutex::default(), staged }
+        Self { parts: Parts { unknown, kick_before, kick_after }, made: Mutex::default(), staged }
     }
 
-    /// The programs as code of this back end, prepared once.
-    pub(crate) fn ready<T: Real, B: Backend<T>>(&self) -> Result<All<B::Code>, LateError> {
-        self.once(|| ready::<T, B>(&self.staged.programs))
-    }
-
-    /// The programs of a step's derivatives.
-    pub(crate) fn ready_derivatives<T: Real, B: Backend<T>>(&self) -> Result<Derivatives<B::Code>, LateError> {
-        let programs = self.staged.derivatives.as_ref().ok_or(LateError::NoGradients)?;
-        self.once(|| ready_each::<T, B>(&programs.each_ref())?.try_into().map_err(|_| LateError::TooLarge))
-    }
-
+    /// The code that is made of the declaration, made once.
     pub(crate) fn once<M: Any + Send + Sync>(
         &self,
         make: impl FnOnce() -> Result<M, LateError>,
@@ -245,12 +178,6 @@ impl Declaration {
         let all = Arc::new(make()?);
         made.push(Arc::clone(&all) as Arc<dyn Any + Send + Sync>);
         Ok(all)
-    }
-
-    /// The name of the kinetic part's type.
-    #[must_use]
-    pub const fn kinetic(&self) -> &'static str {
-        if self.staged.has_kinetic { "WithKinetic" } else { "WithoutKinetic" }
     }
 
     /// The group as it is written in Rust.
@@ -267,11 +194,12 @@ impl Declaration {
     }
 
     /// Checks the numbers of all parameters.
-    pub(crate) fn check<T: Real>(&'static self, numbers: &[T]) -> Result<(), SetupError> {
+    #[allow(clippy::float_cmp)] // a tensor is symmetric to the bit
+    pub(crate) fn check(&'static self, numbers: &[f64]) -> Result<(), SetupError> {
         for (index, parameter) in self.parameters.iter().enumerate() {
             let (start, length) = self.place(index);
             let (field, value) = (parameter.name.as_str(), &numbers[start..start + length]);
-            if !value.iter().all(is_finite) {
+            if !value.iter().all(|number| number.is_finite()) {
                 return Err(SetupError::Parameter { field, cause: "is not finite, or wasn't given" });
             }
             let is_inertia = parameter.kind == ParameterKind::Inertia;
@@ -288,7 +216,7 @@ impl Declaration {
     /// # Errors
     ///
     /// No parameter has this name, or it has another number of numbers.
-    pub fn set<T: Real>(&self, numbers: &mut [T], name: &str, value: &[T]) -> Result<(), LateError> {
+    pub fn set(&self, numbers: &mut [f64], name: &str, value: &[f64]) -> Result<(), LateError> {
         let parameters = &self.parameters;
         let Some(index) = parameters.iter().position(|known| known.name == name) else {
             let known: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
@@ -302,10 +230,10 @@ impl Declaration {
         match (parameters[index].kind, found) {
             (_, found) if found == expected => place.copy_from_slice(value),
             (ParameterKind::Inertia, 3) => {
-                let entry = |at| if on_diagonal(at) { value[at / 4] } else { real::<T>(0.0) };
+                let entry = |at| if on_diagonal(at) { value[at / 4] } else { 0.0 };
                 place.iter_mut().enumerate().for_each(|(at, number)| *number = entry(at));
             }
-            (ParameterKind::DiagonalInertia, 9) if (0..9).all(|at| on_diagonal(at) || value[at] == real(0.0)) => {
+            (ParameterKind::DiagonalInertia, 9) if (0..9).all(|at| on_diagonal(at) || value[at] == 0.0) => {
                 place.iter_mut().zip(value.iter().step_by(4)).for_each(|(number, &value)| *number = value);
             }
             _ => return Err(wrong()),
@@ -335,7 +263,7 @@ impl Declaration {
     /// # Errors
     ///
     /// The number of numbers is another.
-    pub fn described<T: Real>(&self, numbers: &[T]) -> Result<Vec<T>, LateError> {
+    pub fn described(&self, numbers: &[f64]) -> Result<Vec<f64>, LateError> {
         // Every fourth entry of a tensor is on its diagonal.
         let described = self.parameters.iter().map(|parameter| match parameter.kind {
             ParameterKind::DiagonalInertia => (9, 4),
@@ -348,25 +276,5 @@ impl Declaration {
         let (mut numbers, mut stored) = (numbers.iter().copied(), Vec::with_capacity(self.count()));
         described.for_each(|(length, stride)| stored.extend(numbers.by_ref().take(length).step_by(stride)));
         Ok(stored)
-    }
-
-    /// All advected parameters, each with its value in space.
-    pub(crate) fn in_space(&self) -> impl Iterator<Item = (&Carried, InSpace)> {
-        let carried = &self.carried;
-        carried.iter().enumerate().map(|(at, one)| {
-            let value = match (one.field, one.action) {
-                (Some(field), _) => InSpace::Parameter(field),
-                (None, Action::Covector(_)) => {
-                    InSpace::Direction(carried[..at].iter().filter(|other| *other == one).count() % one.shape.0)
-                }
-                (None, _) => InSpace::Identity,
-            };
-            (one, value)
-        })
-    }
-
-    /// The actions with shapes, as a type of advected parameters lists them.
-    pub(crate) fn slots(&self) -> Vec<(Action, (usize, usize))> {
-        self.carried.iter().map(|carried| (carried.action, carried.shape)).collect()
     }
 }

@@ -48,28 +48,11 @@ pub enum LateError {
     /// The sum has a declaration with a pace, whose energy is that of all terms.
     #[error("a Lagrangian with a pace has all its terms in its text")]
     Pace,
-    /// The derivatives of the steps weren't derived.
-    #[error(
-        "the derivatives of the steps weren't derived: write the word `gradients` into the declaration, of each term"
-    )]
-    NoGradients,
     /// The declaration is on another group.
     #[error("the declaration is on {declared}: take that group")]
     Group {
         /// The group of the declaration.
         declared: String,
-    },
-    /// The type of the advected or given parameters is another.
-    #[error("the declaration has {declared}: take a type that carries these")]
-    Advected {
-        /// The declared types.
-        declared: String,
-    },
-    /// The declaration has no kinetic part, or one of another kind.
-    #[error("the declaration is `{declared}`: take this kinetic part")]
-    Kinetic {
-        /// The kind of the declaration.
-        declared: &'static str,
     },
     /// No parameter has this name.
     #[error("there is no parameter `{name}`; there are {known}")]

@@ -1,82 +1,41 @@
 //! A sum of declarations as one declaration, whose programs add the outputs of the terms' programs.
 
-use std::collections::HashMap;
-
 use liestep_derivation::whole::{Value, Words};
-use liestep_derivation::{Array, Parameter, Program, Role, Source, StagedDeclaration, Stages};
+use liestep_derivation::{Array, Carried, Parameter, Program, Role, Source, StagedDeclaration, Stages};
 
 use crate::error::LateError;
-use crate::frames::{Carriage, Combination};
 
 /// A term of a sum, with the places of its numbers among those of all terms.
 struct Part<'a> {
     staged: &'a StagedDeclaration,
     parameters: usize,
     constants: usize,
-    /// Each number of the term's advected parameters, as a combination of the sum's.
-    carried: Vec<Combination>,
+    carried: usize,
     /// Whether the term's system has the right side: that of one term has, and that of the others has zero.
     has_target: bool,
 }
 
-/// The array in which a program finds the numbers of parameters.
-#[derive(Clone, Copy)]
-enum Weights {
-    Constants,
-    Parameters,
-}
-
-impl Weights {
-    fn times(self, words: &mut Words, (weight, _): (Option<[usize; 2]>, usize), value: Value) -> Value {
-        let Some([parameter, constant]) = weight else { return value };
-        let weight = match self {
-            Self::Constants => Source::new(Array::Constants, constant),
-            Self::Parameters => Source::new(Array::Parameters, parameter),
-        };
-        words.multiply(Value::Input(weight), value)
-    }
-}
-
 impl Part<'_> {
-    fn moved(&self, source: Source, has_target: bool) -> Value {
-        let first = match source.array {
-            Array::Target if !has_target => return Value::ZERO,
-            Array::Parameters => self.parameters,
-            Array::Constants => self.constants,
-            _ => 0,
-        };
-        Value::Input(Source::new(source.array, first + source.at))
-    }
-
-    /// Appends a program of a step, which reads its constants.
+    /// Appends a program of the term.
     fn append(&self, words: &mut Words, program: &Program) -> Vec<Value> {
-        self.append_by(words, program, Weights::Constants, self.has_target)
-    }
-
-    /// Appends a program that reads the parameters.
-    fn append_alone(&self, words: &mut Words, program: &Program) -> Vec<Value> {
-        self.append_by(words, program, Weights::Parameters, self.has_target)
-    }
-
-    fn append_by(&self, words: &mut Words, program: &Program, weights: Weights, has_target: bool) -> Vec<Value> {
-        let mut carried = HashMap::new();
-        for &source in program.inputs.iter().filter(|source| matches!(source.array, Array::Advected | Array::Next)) {
-            let sum = self.carried[source.at].iter().fold(Value::ZERO, |sum, &one| {
-                let product = weights.times(words, one, Value::Input(Source::new(source.array, one.1)));
-                words.add(sum, product)
-            });
-            carried.insert(source, sum);
-        }
-        let moved = |source| carried.get(&source).copied().unwrap_or_else(|| self.moved(source, has_target));
-        words.append(program, moved)
+        words.append(program, |source| {
+            let first = match source.array {
+                Array::Target if !self.has_target => return Value::ZERO,
+                Array::Parameters => self.parameters,
+                Array::Constants => self.constants,
+                Array::Advected | Array::Next => self.carried,
+                _ => 0,
+            };
+            Value::Input(Source::new(source.array, first + source.at))
+        })
     }
 
     /// `l`, momentum and Hessian at a velocity: those of `½ ξ·Jξ + s·ξ − V` where it is quadratic.
     fn at_velocity(&self, words: &mut Words) -> [Vec<Value>; 3] {
         if let Some(programs) = &self.staged.programs.at_velocity {
-            return programs.each_ref().map(|program| self.append_alone(words, program));
+            return programs.each_ref().map(|program| self.append(words, program));
         }
-        let at_rest = self.append_alone(words, &self.staged.programs.at_rest);
+        let at_rest = self.append(words, &self.staged.programs.at_rest);
         let size = dimension(self.staged);
         let velocity = Value::inputs(Array::Velocity, size);
         let (hessian, rest) = at_rest.split_at(size * size);
@@ -147,17 +106,13 @@ fn system(solved: &[&Part<'_>], outputs: usize) -> Program {
     words.program(&sum)
 }
 
-fn programs(parts: &[Part<'_>], weights: &[usize]) -> Stages<Program> {
+fn programs(parts: &[Part<'_>]) -> Stages<Program> {
     let stage = |program: fn(&Stages<Program>) -> &Program| {
         sum_of(parts, |part, words| part.append(words, program(&part.staged.programs)))
     };
-    let alone = |program: fn(&Stages<Program>) -> &Program| {
-        sum_of(parts, |part, words| part.append_alone(words, program(&part.staged.programs)))
-    };
     let mut constants = Words::default();
-    let of_terms = parts.iter().flat_map(|part| part.append(&mut constants, &part.staged.programs.constants));
-    let of_weights = weights.iter().map(|&number| Value::Input(Source::new(Array::Parameters, number)));
-    let of_all: Vec<Value> = of_terms.chain(of_weights).collect();
+    let of_terms: Vec<Value> =
+        parts.iter().flat_map(|part| part.append(&mut constants, &part.staged.programs.constants)).collect();
     let solved: Vec<&Part<'_>> = parts.iter().filter(|part| part.has_target || part.staged.parts[0]).collect();
     let size = parts.first().map_or(0, |part| dimension(part.staged));
     let kicked = parts.iter().filter(|part| part.staged.parts[1]);
@@ -166,20 +121,20 @@ fn programs(parts: &[Part<'_>], weights: &[usize]) -> Stages<Program> {
     let derivatives = derivatives.filter(|derivatives| !derivatives.is_empty());
     let of_lagrangian = |at: usize| {
         let programs = parts.iter().filter_map(|part| Some((part, &part.staged.programs.lagrangian.as_ref()?[at])));
-        sum_of(programs, |(part, program), words| part.append_alone(words, program))
+        sum_of(programs, |(part, program), words| part.append(words, program))
     };
     let at_velocity = |at: usize| sum_of(parts, |part, words| std::mem::take(&mut part.at_velocity(words)[at]));
     let mut all = parts.iter().map(|part| part.staged);
     Stages {
-        constants: constants.program(&of_all),
+        constants: constants.program(&of_terms),
         kick_before: stage(|programs| &programs.kick_before),
         newton_system: system(&solved, usize::MAX),
         newton_residual: system(&solved, size),
         kick_after: stage(|programs| &programs.kick_after),
         kick_derivative: derivatives
             .map(|derivatives| sum_of(derivatives, |(part, program), words| part.append(words, program))),
-        momentum_jacobian: alone(|programs| &programs.momentum_jacobian),
-        at_rest: alone(|programs| &programs.at_rest),
+        momentum_jacobian: stage(|programs| &programs.momentum_jacobian),
+        at_rest: stage(|programs| &programs.at_rest),
         at_velocity: all.clone().any(|staged| !staged.is_quadratic).then(|| [0, 1, 2].map(at_velocity)),
         lagrangian: all
             .any(|staged| staged.programs.lagrangian.is_some())
@@ -187,35 +142,8 @@ fn programs(parts: &[Part<'_>], weights: &[usize]) -> Stages<Program> {
     }
 }
 
-/// The sums of the derivatives by the position, followed by those by the numbers of the sum's advected parameters.
-fn derivatives(parts: &[Part<'_>], carried: usize) -> Option<[Program; 4]> {
-    let all = parts.iter().map(|part| Some((part, part.staged.derivatives.as_ref()?)));
-    let all = all.collect::<Option<Vec<_>>>()?;
-    let size = dimension(parts.first()?.staged);
-    let of = |at: usize, of_place: usize, of_number: usize| {
-        let (mut words, mut sum) = (Words::default(), Vec::new());
-        let mut behind = vec![Value::ZERO; carried * of_number];
-        for (part, programs) in &all {
-            // The weights are parameters of the whole sum.
-            let mut one = part.append_by(&mut words, &programs[at], Weights::Parameters, true);
-            let numbers = one.split_off(of_place.min(one.len()));
-            for (own, combined) in numbers.chunks(of_number.max(1)).zip(&part.carried) {
-                for &entry in combined {
-                    for (derivative, to) in own.iter().zip(&mut behind[entry.1 * of_number..]) {
-                        let product = Weights::Parameters.times(&mut words, entry, *derivative);
-                        *to = words.add(*to, product);
-                    }
-                }
-            }
-            sum = if sum.is_empty() { one } else { words.added(&sum, &one) };
-        }
-        words.program(&[sum, behind].concat())
-    };
-    Some([of(0, usize::MAX, 0), of(1, usize::MAX, 0), of(2, size, 1), of(3, 0, 2 * size)])
-}
-
-/// The sum of several declarations, with the directions of space in place of vectors if `in_frames`.
-pub(crate) fn summed(terms: &[&StagedDeclaration], in_frames: bool) -> Result<StagedDeclaration, LateError> {
+/// The sum of several declarations.
+pub(crate) fn summed(terms: &[&StagedDeclaration]) -> Result<StagedDeclaration, LateError> {
     let first = *terms.first().ok_or(LateError::Nothing)?;
     if let Some(other) = terms.iter().find(|staged| staged.factors != first.factors) {
         let names: Vec<&str> = other.factors.iter().map(|factor| factor.name.as_str()).collect();
@@ -228,8 +156,8 @@ pub(crate) fn summed(terms: &[&StagedDeclaration], in_frames: bool) -> Result<St
     let constants = |terms: &[&StagedDeclaration]| -> usize {
         terms.iter().map(|staged| staged.programs.constants.outputs.len()).sum()
     };
-    let mut carriage = Carriage::of(terms, in_frames, constants(terms));
-    let (mut parts, mut parameters) = (Vec::<Part<'_>>::new(), Vec::<Parameter>::new());
+    let length = |carried: &Carried| carried.shape.0 * carried.shape.1;
+    let (mut parts, mut parameters, mut carried) = (Vec::new(), Vec::<Parameter>::new(), Vec::<Carried>::new());
     for (at, &staged) in terms.iter().enumerate() {
         let alike = terms[..at].iter().filter(|other| other.name == staged.name).count();
         let name = if alike == 0 { staged.name.clone() } else { format!("{}{}", staged.name, alike + 1) };
@@ -238,9 +166,11 @@ pub(crate) fn summed(terms: &[&StagedDeclaration], in_frames: bool) -> Result<St
             staged,
             parameters: before,
             constants: constants(&terms[..at]),
-            carried: carriage.take(staged, parameters.len(), before),
+            carried: carried.iter().map(length).sum(),
             has_target: at == with_target,
         });
+        let fields = parameters.len();
+        carried.extend(staged.carried.iter().map(|one| Carried { field: one.field.map(|at| fields + at), ..*one }));
         let named = |one: &Parameter| Parameter { name: format!("{name}.{}", one.name), kind: one.kind };
         parameters.extend(staged.parameters.iter().map(named));
     }
@@ -264,9 +194,8 @@ pub(crate) fn summed(terms: &[&StagedDeclaration], in_frames: bool) -> Result<St
         in_increment: first.in_increment,
         energy: None,
         blocks: solved().next().map_or_else(Vec::new, |one| one.blocks.iter().copied().filter(in_all).collect()),
-        programs: programs(&parts, &carriage.weights),
-        derivatives: derivatives(&parts, carriage.numbers()),
+        programs: programs(&parts),
         parameters,
-        carried: carriage.carried,
+        carried,
     })
 }

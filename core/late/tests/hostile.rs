@@ -2,12 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use liestep::effects::RigidBody;
-use liestep::groups::SE3;
-use liestep::mechanics::{Inertia, Term as _, WithoutKinetic};
-use liestep::{SO3, SetupError, Stepper};
-use liestep_late::{Backend, Declaration, Function, Interpreter, Late, LateError, Operation, Program};
-use nalgebra::{Matrix3, Vector3};
+use liestep::SetupError;
+use liestep::with::Method;
+use liestep_late::{Backend, Declaration, Function, Interpreter, LateError, Operation, Program, Whole, WholeError};
 
 const KINETIC: &str = "((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h)";
 
@@ -112,24 +109,30 @@ fn what_does_not_fit_is_told() {
         let message = error.to_string();
         assert!(parts.iter().all(|part| message.contains(part)), "{message}");
     };
-    let text = body(" - h * k * F.trace()");
-    says(Late::<SE3>::parse(&text).unwrap_err(), &["SO3"]);
-    says(Late::<SO3, (), WithoutKinetic>::parse(&text).unwrap_err(), &["`WithKinetic`"]);
+    let declaration = Declaration::parse(&body(" - h * k * F.trace()")).unwrap();
+    says(declaration.numbers(&[("q", &[1.0])]).unwrap_err(), &["`q`", "J_d, k"]);
+    says(declaration.numbers(&[("k", &[1.0, 2.0])]).unwrap_err(), &["`k`", "1 numbers", "2 were"]);
+    let refused = |values: &[(&str, &[f64])]| {
+        let numbers = declaration.numbers(values).unwrap();
+        match Whole::<Interpreter>::of(declaration, &numbers, 0.01, Method::default()) {
+            Err(WholeError::Setup(error)) => error,
+            other => panic!("{other:?}"),
+        }
+    };
+    let missing = refused(&[("J_d", &[2.0, 2.0, 1.0])]);
+    assert!(matches!(missing, SetupError::Parameter { field: "k", .. }), "{missing}");
+    let skew = refused(&[("k", &[1.0]), ("J_d", &[2.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0])]);
+    assert!(matches!(skew, SetupError::Parameter { field: "J_d", .. }), "{skew}");
     let carried =
         "#[lagrangian(group = SO3, advected(w = up), l_d = -h * w.dot(&up))] struct Pull { up: Vector3<f64> }";
     let _ = mistakes(carried);
     let carried = "#[lagrangian(group = SO3, advected(w = up), l_d = -h * w.dot(&a))] struct Pull { a: Vector3<f64>, up: Vector3<f64> }";
-    says(Late::<SO3, (), WithoutKinetic>::parse(carried).unwrap_err(), &["Covector"]);
-    let pull = Late::<SO3, (Vector3<f64>, Vector3<f64>), WithoutKinetic>::parse(carried).unwrap();
-    let pull = pull.with("a", &[1.0, 0.0, 0.0]).unwrap().with("up", &[0.0, 0.0, 1.0]).unwrap();
-    assert_eq!(pull.advected(), (Vector3::z(), Vector3::zeros()), "the second is not named");
-    let late = Late::<SO3>::parse(&text).unwrap();
-    says(late.clone().with("q", &[1.0]).unwrap_err(), &["`q`", "J_d, k"]);
-    says(late.clone().with("k", &[1.0, 2.0]).unwrap_err(), &["`k`", "1 numbers", "2 were"]);
-    let missing = Stepper::new(late.clone().with("J_d", &[2.0, 2.0, 1.0]).unwrap(), 0.01).unwrap_err();
-    assert!(matches!(missing, SetupError::Parameter { field: "k", .. }), "{missing}");
-    let skew = late.with("k", &[1.0]).unwrap().with("J_d", &[2.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0]).unwrap();
-    assert!(matches!(Stepper::new(skew, 0.01).unwrap_err(), SetupError::Parameter { field: "J_d", .. }));
+    let pull = Declaration::parse(carried).unwrap();
+    let numbers = pull.numbers(&[("a", &[1.0, 0.0, 0.0]), ("up", &[0.0, 0.0, 1.0])]).unwrap();
+    match Whole::<Interpreter>::of(pull, &numbers, 0.01, Method::default()) {
+        Err(WholeError::Declaration(error)) => says(error, &["kinetic part"]),
+        other => panic!("{other:?}"),
+    }
 }
 
 /// Products of sums whose expansion takes too long are refused, by a count of operations.
@@ -159,22 +162,6 @@ fn missing_functions_are_told() {
     }
 }
 
-/// Single precision agrees with the compiled step, too, to the bit.
-#[test]
-fn single_precision() {
-    let J = Inertia::<f32>::new(Matrix3::new(2.0, 0.1, 0.0, 0.1, 2.5, 0.2, 0.0, 0.2, 3.0)).unwrap();
-    let body = RigidBody { J_d: J.to_nonstandard() };
-    let late = Late::<SO3<f32>>::like(&body).unwrap();
-    let (one, other) = (Stepper::new(body, 0.01_f32).unwrap(), Stepper::new(late, 0.01_f32).unwrap());
-    let start = (SO3::<f32>::identity(), Vector3::new(0.3_f32, 1.0, 5.0));
-    let (mut first, mut second) = (one.start(start.0, start.1).unwrap(), other.start(start.0, start.1).unwrap());
-    for step in 0..1_000 {
-        one.step(&mut first).unwrap();
-        other.step(&mut second).unwrap();
-        assert_eq!(first.momentum(), second.momentum(), "after step {step}");
-    }
-}
-
 /// Memory of a thousand declarations; `-- --ignored` measures it.
 #[test]
 #[ignore = "takes minutes without optimisation"]
@@ -188,7 +175,7 @@ fn a_thousand_declarations_are_kept_in_bounded_memory() {
         return;
     };
     for number in 0..1_000 {
-        Late::<SO3>::parse(&body(&format!(" - {number}.5 * h * k * F.trace()"))).unwrap();
+        Declaration::parse(&body(&format!(" - {number}.5 * h * k * F.trace()"))).unwrap();
     }
     let kept = resident().unwrap_or(before) - before;
     println!("a thousand declarations of a body: {kept} kB");

@@ -15,7 +15,7 @@ use liestep::methods::CompositionScheme;
 use liestep::motion::{AnyStepper, Integrator as _, Propagator as _, Remedy};
 use liestep::with::Method;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, Stepper};
-use liestep_late::{Declaration, LateError, Whole, WholeError, numbers};
+use liestep_late::{Declaration, LateError, Whole, WholeError};
 use nalgebra::Vector3;
 
 type Generators = Vec<Vec<f64>>;
@@ -155,8 +155,7 @@ fn top() -> FullTop {
 }
 
 fn whole(h: f64, method: &str) -> Whole {
-    let declaration = Declaration::parse(FullTop::DECLARATION).expect("a declaration");
-    let values = declaration.described(&numbers(&top())).expect("numbers");
+    let (declaration, values) = Declaration::like(&top()).expect("a declaration");
     Whole::of(declaration, &values, h, method.parse().expect("a method")).expect("a stepper")
 }
 
@@ -218,8 +217,7 @@ fn lanes_have_the_bits_of_single_steps() {
     // The kicks of a torque are known before a step.
     let both = Declaration::sum(&texts).expect("a sum");
     let of_both = [2.0, 0.1, -0.2, 0.1, 2.5, 0.3, -0.2, 0.3, 3.0, 0.1, -0.2, 0.1];
-    let full = Declaration::parse(FullTop::DECLARATION).expect("a declaration");
-    let of_full = full.described(&numbers(&top())).expect("numbers");
+    let (full, of_full) = Declaration::like(&top()).expect("a declaration");
     for (declaration, values, name) in [(both, &of_both[..], "Torque.torque"), (full, &of_full, "rho")] {
         // The last body turns too far for its step.
         let mut bodies = [0.0, 1.0, 2.0, 3.0, 40.0].map(|number| {

@@ -1,12 +1,12 @@
 //! Machine code for the programs of a Lagrangian that is read while a program runs.
 //!
-//! [`Machine`] is a back end of [`Late`](liestep_late::Late): `Late<SO3, W, K, Machine>`. A program is interpreted
-//! until it has run some hundred times, so that a first step waits for no compiler, and then becomes a function, by
-//! [Cranelift](https://cranelift.dev), operation by operation: nothing is contracted or reassociated, and functions
-//! like `sin` are calls of the interpreter's. So the steps are the same to the bit.
+//! [`Machine`] is a back end of [`Whole`](liestep_late::Whole): `Whole<Machine>`. A step is interpreted until it has been
+//! made some tens of times, and any other program some hundred, so that a first step waits for no compiler; then it becomes
+//! a function, by [Cranelift](https://cranelift.dev), operation by operation: nothing is contracted or reassociated, and
+//! functions like `sin` are calls of the interpreter's. So the steps are the same to the bit.
 //!
-//! There is machine code for x86-64 and aarch64, for numbers and for the eight lanes of an ensemble. In other lanes,
-//! and for other scalars, programs are interpreted. The code for aarch64 hasn't been run; there, too, the tests here
+//! There is machine code for x86-64 and aarch64, for numbers and for the eight lanes of an ensemble. In other lanes
+//! programs are interpreted. The code for aarch64 hasn't been run; there, too, the tests here
 //! compare it with the interpreter.
 //!
 //! # Memory

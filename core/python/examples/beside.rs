@@ -8,12 +8,12 @@
 
 use std::time::Instant;
 
-use liestep::mechanics::WithKinetic;
-use liestep::motion::Integrator as _;
+use liestep::motion::{AnyStepper, Integrator as _};
 use liestep::recording::Recorder;
+use liestep::with::Method;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep_ensemble::{Ensemble, Local, Store};
-use liestep_late::Late;
+use liestep_late::{Declaration, WholeError, stepper};
 use liestep_machine::Machine;
 use nalgebra::Vector3;
 
@@ -33,57 +33,61 @@ struct HeavyTop {
 
 type Error = Box<dyn std::error::Error>;
 
-/// The declaration read at run time and run by machine code, as in Python.
-fn as_text() -> Result<Late<SO3, Vector3<f64>, WithKinetic, Machine>, Error> {
-    let late = Late::parse(
+/// The declaration read at run time, and its numbers.
+fn text() -> Result<(&'static Declaration, Vec<f64>), Error> {
+    let top = Declaration::parse(
         "#[lagrangian(group = SO3, advected(w = up), l_d =
             ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * m * g * w.dot(&(rho + F * rho)))]
         struct Top { J_d: NonstandardInertia, m: f64, g: f64, rho: Vector3<f64>, up: Vector3<f64> }",
     )?;
-    let late = late.with("J_d", &[2.0, 2.0, 1.0])?.with("m", &[1.0])?.with("g", &[9.81])?;
-    Ok(late.with("rho", &[0.0, 0.0, 1.0])?.with("up", &[0.0, 0.0, 1.0])?)
+    let numbers: [(&str, &[f64]); 5] = [
+        ("J_d", &[2.0, 2.0, 1.0]),
+        ("m", &[1.0]),
+        ("g", &[9.81]),
+        ("rho", &[0.0, 0.0, 1.0]),
+        ("up", &[0.0, 0.0, 1.0]),
+    ];
+    Ok((top, top.numbers(&numbers)?))
 }
 
+/// A stepper of it by machine code, as in Python.
+fn machine((top, numbers): &(&'static Declaration, Vec<f64>)) -> Result<AnyStepper, WholeError> {
+    stepper::<Machine>(top, numbers, 0.01, Method::default())
+}
+
+const IDENTITY: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+
 fn main() -> Result<(), Error> {
-    let (identity, velocity) = ([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], Vector3::new(0.5, 2.0, 12.0));
+    let (identity, velocity) = (SO3::identity(), Vector3::new(0.5, 2.0, 12.0));
     let given: Vec<String> = std::env::args().skip(1).collect();
     match given.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["bits"] => {
             let J_d = NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0))?;
             let top = HeavyTop { J_d, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
             let stepper = Stepper::new(top, 0.01)?;
-            let mut state = stepper.start(SO3::identity(), velocity)?;
+            let mut state = stepper.start(identity, velocity)?;
             stepper.run(&mut state, 1000)?;
             state.momentum().iter().for_each(|number| println!("{:#018x}", number.to_bits()));
         }
         ["steps"] => {
             let begun = Instant::now();
-            let stepper = Stepper::new(as_text()?, 0.01)?.into_any();
-            let mut state = stepper.start(&identity, velocity.as_slice())?;
+            let stepper = machine(&text()?)?;
+            let mut state = stepper.start(&IDENTITY, velocity.as_slice())?;
             let mut recorder = Recorder::new(&stepper, liestep::recording::Csv::new(Vec::new()));
             stepper.observed(&mut state).every(1000, |now| recorder.record(now)).steps(1_000_000)?;
             println!("{:.4}", begun.elapsed().as_secs_f64());
         }
         ["members", folder] => {
-            let top = as_text()?;
+            let text = text()?;
             let make = move |member: &liestep_ensemble::Member<'_>| {
-                let stepper = Stepper::new(top.clone(), 0.01)?.into_any();
+                let stepper = machine(&text).map_err(|error| liestep_ensemble::EnsembleError::Other(error.to_string()))?;
                 let velocity = [0.0, 0.0, 12.0].iter().enumerate();
                 let velocity = velocity.map(|(k, mean)| member.normal(&format!("velocity.{}", k + 1), *mean, 0.1));
-                let state = stepper.start(&identity, &velocity.collect::<Vec<_>>())?;
+                let state = stepper.start(&IDENTITY, &velocity.collect::<Vec<_>>())?;
                 Ok((stepper, state))
             };
             let begun = Instant::now();
-            // The columns that the example in Python records of a member.
-            let columns = (0..17).map(|column| format!("column_{column}")).collect::<Vec<_>>();
-            let columns = columns.iter().map(String::as_str).collect::<Vec<_>>();
-            let ensemble = Ensemble::one_by_one("tops", 100_000, 100, make).seed(7).keep_named(&columns, |run, row| {
-                let (velocity, energy) = (run.stepper.velocity(run.state), run.stepper.energy(run.state));
-                let (attitude, momentum) = (run.state.attitude(), run.state.momentum());
-                let numbers = std::iter::once(run.stepper.time(run.state)).chain(attitude.iter().copied());
-                let numbers = numbers.chain(velocity).chain(momentum.iter().copied());
-                row.iter_mut().zip(numbers.chain([energy])).for_each(|(place, number)| *place = number);
-            });
+            let ensemble = Ensemble::<AnyStepper>::one_by_one("tops", 100_000, 100, make).seed(7);
             ensemble.run(&Local::threads(1), &Store::folder(folder)?)?;
             println!("{:.4}", begun.elapsed().as_secs_f64());
         }

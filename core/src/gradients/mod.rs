@@ -247,16 +247,12 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// # Errors
     ///
     /// [`SetupError::NoSecondDerivatives`] for a splitting with force gradients, if a term's derivatives were written
-    /// by hand without [`kick_gradient`](SecondDerivatives::kick_gradient), and for derivatives that [aren't
-    /// derived](SecondDerivatives::are_derived).
+    /// by hand without [`kick_gradient`](SecondDerivatives::kick_gradient).
     pub fn linearised(&self) -> Result<Linearisation<'_, S, P>, SetupError>
     where
         S: SecondDerivatives,
         P: Linearisable<S>,
     {
-        if !self.scene.are_derived() {
-            return Err(SetupError::NoSecondDerivatives);
-        }
         self.plan.check_stages(&self.scene)?;
         Ok(Linearisation { stepper: self, table: self.plan.table() })
     }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use crate::gradients::recording::Change;
 use crate::groups::{Advected as _, LieGroup, SquareOf, seen_of_unit};
-use crate::mechanics::pattern_of_type;
+use crate::mechanics::pattern;
 use crate::mechanics::{
     Effect, Group, Matrix, PointOf, Scalar, SecondDerivatives, Square, StepDerivatives, StepPoint, Vector,
 };
@@ -244,9 +244,8 @@ impl<'a, E: SecondDerivatives> Stage<'a, E> {
                 let (matrix, share) = self.effect.adjoint_system(self.point(h), &end.momentum);
                 let inverse = Group::<E>::from_increment(&self.increment).inverse();
                 let attitude = inverse.adjoint_transpose(&end.attitude);
-                let (factors, det) =
-                    Vector::<E>::factorise_with(&Vector::<E>::transpose(&matrix), pattern_of_type::<E>());
-                let start = Vector::<E>::solve_again_with(&factors, det, pattern_of_type::<E>(), &(attitude + share));
+                let (factors, det) = Vector::<E>::factorise_with(&Vector::<E>::transpose(&matrix), pattern::<E>());
+                let start = Vector::<E>::solve_again_with(&factors, det, pattern::<E>(), &(attitude + share));
                 let by_place = self.fixed_increment([&start, &end.momentum], add, values);
                 Cotangent { attitude: attitude + by_place, momentum: start }
             }

@@ -7,7 +7,7 @@ use core::cell::RefCell;
 use crate::gradients::recording::Change;
 use crate::gradients::stage::{FlowDerivatives, Kind, Pass, Stage, WayBack};
 use crate::groups::LieGroup;
-use crate::mechanics::pattern_of_type;
+use crate::mechanics::pattern;
 use crate::mechanics::{Group, SecondDerivatives, Term, Vector};
 use crate::numbers::{Coordinates, Entries as _, Real, is_finite, real};
 use nalgebra::SimdComplexField as _;
@@ -217,8 +217,8 @@ impl<G: LieGroup, A> Pass<G> for Tangent<G, A> {
             // The solve is `∂μ/∂ε ε = δμ − ∂μ/∂ζ ζ`; then `ζ⁺ = Ad_{F⁻¹}(ζ + ε)`, `δμ⁺ = ∂μ⁺/∂ε ε + ∂μ⁺/∂ζ ζ`.
             Kind::Step(h) => {
                 let blocks = stage.blocks(h);
-                let (factors, determinant) = Vector::<E>::factorise_with(&blocks.start_by_turn, pattern_of_type::<E>());
-                let solution = Vector::<E>::inverse_with(&factors, determinant, pattern_of_type::<E>());
+                let (factors, determinant) = Vector::<E>::factorise_with(&blocks.start_by_turn, pattern::<E>());
+                let solution = Vector::<E>::inverse_with(&factors, determinant, pattern::<E>());
                 let turned = stage.turned_back();
                 for k in 0..self.columns.len() {
                     let shares = self.shares_of(k);

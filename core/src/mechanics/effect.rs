@@ -1,15 +1,13 @@
 //! The trait of a term of a scene: its share of each stage of a step.
 
-use alloc::borrow::ToOwned as _;
-use alloc::string::String;
 use core::fmt::Debug;
 
 use crate::groups::{LieGroup, Retraction};
 use crate::mechanics::description::SceneVisitor;
+use crate::mechanics::facts::Facts;
 use crate::mechanics::kinetic_part::{KineticPart, WithKinetic};
-use crate::mechanics::operations::Operations;
 use crate::mechanics::term::Term;
-use crate::numbers::{Blocks, Coordinates, Pattern, Real, real};
+use crate::numbers::{Coordinates, Pattern, Real, real};
 
 /// The scalar of an effect.
 pub type Scalar<E> = <E as Term>::Scalar;
@@ -24,35 +22,6 @@ pub type Square<E> = <Vector<E> as Coordinates<Scalar<E>>>::Square;
 
 /// The blocks of an effect's Newton matrix that couple neighbours in a row of bodies.
 pub(crate) type Links<E> = <Vector<E> as Coordinates<Scalar<E>>>::Links;
-
-/// The parts of a step to which an effect contributes; the other contributions are zero for all parameters.
-///
-/// They are known at compile time, so a sum adds no zeros and has no branches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Parts {
-    /// The unknown part `U(F, w)` of the equation for `F`. A potential of the positions at both ends of a step has
-    /// none: moving `F` and `w` together from the left leaves `F⁻¹·w` unchanged.
-    pub unknown: bool,
-    /// The kick `kick_before(w)`.
-    pub kick_before: bool,
-    /// The kick `kick_after(F, w⁺)`.
-    pub kick_after: bool,
-}
-
-impl Parts {
-    /// All parts.
-    pub const ALL: Self = Self { unknown: true, kick_before: true, kick_after: true };
-
-    /// The parts that at least one of two effects has.
-    #[must_use]
-    pub const fn or(self, other: Self) -> Self {
-        Self {
-            unknown: self.unknown || other.unknown,
-            kick_before: self.kick_before || other.kick_before,
-            kick_after: self.kick_after || other.kick_after,
-        }
-    }
-}
 
 /// The result of one Newton iteration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,26 +55,20 @@ pub(crate) fn update_of<E: Effect + ?Sized>(
     terms: &E::StepTerms,
     half: &Vector<E>,
 ) -> NewtonUpdate<Vector<E>, Square<E>, Scalar<E>> {
-    if const { !E::LINKS_NEIGHBOURS } {
+    if const { !E::FACTS.links_neighbours } {
         let (residual, jacobian) = E::newton_system(constants, terms, half);
-        return NewtonUpdate::of(&residual, &jacobian, pattern::<E>(constants));
+        return NewtonUpdate::of(&residual, &jacobian, pattern::<E>());
     }
     let mut links = Vector::<E>::no_links();
     let (mut update, mut jacobian) = E::newton_linked(constants, terms, half, &mut links);
-    let det = Vector::<E>::solve_linked(&mut jacobian, &links, pattern::<E>(constants), &mut update);
+    let det = Vector::<E>::solve_linked(&mut jacobian, &links, pattern::<E>(), &mut update);
     NewtonUpdate { update, factors: None, det }
 }
 
 /// The known structure of an effect's Newton matrix.
 #[hot]
-pub(crate) fn pattern<E: Effect + ?Sized>(constants: &E::Constants) -> Pattern {
-    Pattern { apart: E::apart(constants), ..pattern_of_type::<E>() }
-}
-
-/// The structure of the Newton matrix that is known from the type.
-#[hot]
-pub(crate) const fn pattern_of_type<E: Effect + ?Sized>() -> Pattern {
-    Pattern { factors: <Group<E> as LieGroup>::FACTORS, apart: E::APART }
+pub(crate) const fn pattern<E: Effect + ?Sized>() -> Pattern {
+    Pattern { factors: <Group<E> as LieGroup>::FACTORS, apart: E::FACTS.apart }
 }
 
 /// The continuous Lagrangian `l(ξ, w)` that an effect discretises, with its derivatives at a velocity.
@@ -171,31 +134,8 @@ pub trait Effect: Term {
     /// The quantities that depend on `a` and `w`.
     type StepTerms: Copy;
 
-    /// The parts that aren't zero.
-    const PARTS: Parts = Parts::ALL;
-
-    /// The power of the Cayley denominator in the factor of [`newton_system`](Self::newton_system).
-    const DENOMINATORS: u32 = 0;
-
-    /// Whether [`inertia`](Self::inertia) is the same for all `w`. If so, it is checked once, when a stepper is
-    /// constructed, and methods that contain the motion of one free body are available.
-    const INERTIA_IS_CONSTANT: bool;
-
-    /// Whether the continuous limit is quadratic in the velocity. If it isn't, [`inertia`](Self::inertia) and
-    /// [`momentum_bias`](Self::momentum_bias) are those at rest, and [`limit`](Self::limit) has the values elsewhere.
-    const IS_QUADRATIC: bool;
-
-    /// The blocks of unknowns between which the Jacobian of [`newton_system`](Self::newton_system) is zero for all
-    /// values. If bodies are coupled only by potentials of the ends of a step, each body is solved separately. Blocks
-    /// end where factors of the group end; a single block is always valid.
-    const APART: Blocks = Blocks::WHOLE;
-
-    /// Whether the Jacobian of [`newton_system`](Self::newton_system) couples neighbours in a row of bodies; the whole
-    /// Jacobian is then that of [`newton_linked`](Self::newton_linked).
-    const LINKS_NEIGHBOURS: bool = false;
-
-    /// The number of operations of the effect in a step, as the macro counts them.
-    const OPERATIONS: Operations = Operations::UNCOUNTED;
+    /// The facts that hold for all values of the parameters.
+    const FACTS: Facts;
 
     /// The declaration and everything derived from it, as text.
     const DERIVATION: &'static str;
@@ -203,42 +143,10 @@ pub trait Effect: Term {
     /// The text of the declaration, which `liestep-late` derives at run time; empty for sums and hand-written effects.
     const DECLARATION: &'static str = "";
 
-    /// The [`DERIVATION`](Self::DERIVATION) of an effect, and for a sum those of all its terms: constants can't be
-    /// concatenated, and an effect that is declared at run time has none.
-    #[must_use]
-    fn derivation(&self) -> String {
-        Self::DERIVATION.to_owned()
-    }
-
-    /// Whether the inertia of this value is constant, as by [`INERTIA_IS_CONSTANT`](Self::INERTIA_IS_CONSTANT): the
-    /// type of an effect that is declared at run time doesn't determine it.
-    #[must_use]
-    fn has_constant_inertia(&self) -> bool {
-        Self::INERTIA_IS_CONSTANT
-    }
-
-    /// [`IS_QUADRATIC`](Self::IS_QUADRATIC) of a value.
-    #[must_use]
-    fn is_quadratic(&self) -> bool {
-        Self::IS_QUADRATIC
-    }
-
-    /// [`DENOMINATORS`](Self::DENOMINATORS) of a value.
-    #[must_use]
-    fn denominators(_: &Self::Constants) -> u32 {
-        Self::DENOMINATORS
-    }
-
-    /// The parts of a value, some of the [`PARTS`](Self::PARTS) of its type.
-    #[must_use]
-    fn parts(_: &Self::Constants) -> Parts {
-        Self::PARTS
-    }
-
-    /// The independent blocks of a value, which may be more than the [`APART`](Self::APART) of its type.
-    #[must_use]
-    fn apart(_: &Self::Constants) -> Blocks {
-        Self::APART
+    /// The facts about this value: those of the type, unless the effect is a text. No sum asks for them.
+    #[doc(hidden)]
+    fn facts(&self) -> Facts {
+        Self::FACTS
     }
 
     /// Visits the derivations and, field by field in the order of the declaration, every scalar of the parameters.
@@ -249,7 +157,7 @@ pub trait Effect: Term {
     /// The exact right-trivialised Newton Jacobian: entry `(k, j)` is the derivative of component `k` of the momentum
     /// equation (2.7), [`legendre_minus`](crate::mechanics::DiscreteLagrangian::legendre_minus), along `F ↦ exp(t E_j) F`.
     ///
-    /// For several bodies it has the block of each. If the equation [couples neighbours](Self::LINKS_NEIGHBOURS), the
+    /// For several bodies it has the block of each. If the equation [couples neighbours](Facts::links_neighbours), the
     /// blocks between two bodies are missing.
     fn momentum_jacobian(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Square<Self>;
 
@@ -262,20 +170,10 @@ pub trait Effect: Term {
         self.limit(None, w).hessian
     }
 
-    /// The covector `s` of the [limit](Self::limit), the coefficient of the velocity.
-    fn momentum_bias(&self, w: &Self::Advected) -> Vector<Self> {
-        self.limit(None, w).momentum
-    }
-
-    /// The potential `V(w)` of the [limit](Self::limit), in J.
-    fn potential(&self, w: &Self::Advected) -> Self::Scalar {
-        -self.limit(None, w).l
-    }
-
     /// The advected and prescribed parameters with another energy `E_0`, J, and the previous `E_0`; `None` if no `pace`
     /// was declared.
     ///
-    /// The [potential](Self::potential) is then `s (V − E_0)` with the pace `s` of [`paced`](crate::Stepper::paced).
+    /// The potential of the [limit](Self::limit) is then `s (V − E_0)` with the pace `s` of [`paced`](crate::Stepper::paced).
     #[must_use]
     fn with_energy(&self, _: &Self::Advected, _energy: Self::Scalar) -> Option<(Self::Advected, Self::Scalar)> {
         None
@@ -299,8 +197,8 @@ pub trait Effect: Term {
     ///
     /// The kicks of a [`SplittingScheme`](crate::methods::SplittingScheme) with force gradients are made with it.
     #[must_use]
-    fn kick_derivative(constants: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
-        (!Self::parts(constants).kick_before).then(Vector::<Self>::zero)
+    fn kick_derivative(_: &Self::Constants, _: &Self::Advected, _: &Vector<Self>) -> Option<Vector<Self>> {
+        (!Self::FACTS.parts.kick_before).then(Vector::<Self>::zero)
     }
 
     /// What one solve needs of `a = μ + kick_before(w)` and `w`.
@@ -308,14 +206,14 @@ pub trait Effect: Term {
 
     /// The remainder of the right side `a` that the [step terms](Self::step_terms) of this effect leave to the other terms of
     /// a sum. Each component of the momentum equation (2.7) has `a` once: an effect with an
-    /// [unknown part](Parts::unknown) takes all of it, one at [places](crate::mechanics::Each) of a system that of the bodies
+    /// [unknown part](crate::mechanics::Parts::unknown) takes all of it, one at [places](crate::mechanics::Each) of a system that of the bodies
     /// there, and one without leaves it.
     #[must_use]
-    fn remainder(constants: &Self::Constants, a: &Vector<Self>) -> Vector<Self> {
-        if Self::parts(constants).unknown { Vector::<Self>::zero() } else { *a }
+    fn remainder(_: &Self::Constants, a: &Vector<Self>) -> Vector<Self> {
+        if Self::FACTS.parts.unknown { Vector::<Self>::zero() } else { *a }
     }
 
-    /// `(h/2) (1 + |y|²)ⁿ (U(τ(2y), w) − a)` with `n` = [`DENOMINATORS`](Self::DENOMINATORS), and its derivative with
+    /// `(h/2) (1 + |y|²)ⁿ (U(τ(2y), w) − a)` with `n` = [`denominators`](Facts::denominators), and its derivative with
     /// respect to `y`, half the coordinates of `F`.
     ///
     /// In this form the derivative at rest is the inertia, whatever the step and its sign, and for (3.13) the moments

@@ -32,12 +32,6 @@ pub trait DiscreteLagrangian: Effect {
     /// hold if vectors were declared as points. In an implementation by hand it is the author's claim.
     const SELF_ADJOINT: bool;
 
-    /// Whether this value is self-adjoint, as by [`SELF_ADJOINT`](Self::SELF_ADJOINT): the type of a Lagrangian
-    /// declared at run time doesn't determine it.
-    fn is_self_adjoint(&self) -> bool {
-        Self::SELF_ADJOINT
-    }
-
     /// The declared `l_d(F, w)`, in J s.
     fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
 

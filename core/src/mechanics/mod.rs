@@ -6,9 +6,11 @@
 //! here except that of the inverse Legendre transform.
 
 mod continuous;
+mod derivation;
 mod description;
 mod direction;
 mod effect;
+mod facts;
 mod force;
 mod inertia;
 mod kinetic_part;
@@ -23,13 +25,15 @@ mod term;
 mod velocity;
 
 pub use continuous::{ContinuousLagrangian, Legendre};
+pub use derivation::derivation;
 pub use description::SceneVisitor;
-pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Parts, Regular, Scalar, Square, Vector};
-pub(crate) use effect::{pattern, pattern_of_type, update_of};
+pub use effect::{Effect, Group, Limit, Matrix, Moves, NewtonUpdate, Regular, Scalar, Square, Vector};
+pub(crate) use effect::{pattern, update_of};
+pub use facts::{Facts, Parts};
 pub use force::Force;
 pub use inertia::{DiagonalNonstandardInertia, Inertia, InertiaError, NonstandardInertia};
 #[doc(hidden)]
-pub use kinetic_part::{KineticPart, OnlyKicks};
+pub use kinetic_part::KineticPart;
 pub use kinetic_part::{WithKinetic, WithoutKinetic};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub(crate) use noether::{left_symmetries, right_symmetries};

@@ -37,11 +37,6 @@ pub trait SecondDerivatives: Effect {
     /// The number of scalars that [`describe`](Effect::describe) visits.
     const PARAMETERS: usize;
 
-    /// Whether a value has the derivatives: a text that is read at run time may be without `gradients`.
-    fn are_derived(&self) -> bool {
-        true
-    }
-
     /// The derivatives along turns and displacements.
     fn step_derivatives(&self, at: PointOf<'_, Self>) -> StepDerivatives<Square<Self>>;
 
@@ -175,10 +170,6 @@ where
     B: SecondDerivatives<Scalar = A::Scalar, Group = A::Group, Retraction = A::Retraction>,
 {
     const PARAMETERS: usize = A::PARAMETERS + B::PARAMETERS;
-
-    fn are_derived(&self) -> bool {
-        self.first.are_derived() && self.second.are_derived()
-    }
 
     fn step_derivatives(&self, at: PointOf<'_, Self>) -> StepDerivatives<Square<Self>> {
         let (first, second) = at.of_terms();

@@ -1,24 +1,22 @@
 //! Scenes: sums of effects.
 
-use alloc::format;
-use alloc::string::String;
 use core::ops::Add;
 
 use crate::error::SetupError;
 use crate::groups::LieGroup;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Square, Vector, update_of};
+use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Square, Vector, update_of};
+use crate::mechanics::facts::Facts;
 use crate::mechanics::kinetic_part::KineticPart;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
-use crate::mechanics::operations::Operations;
 use crate::mechanics::term::Term;
-use crate::numbers::{Blocks, Coordinates as _};
+use crate::numbers::Coordinates as _;
 
 /// The sum of two terms of one group, effects or continuous Lagrangians; what `+` makes of them.
 ///
 /// Lagrangians add, and with them momentum maps, diamonds, momentum equations, Jacobians and energies. A part that a
 /// term doesn't have costs nothing: no memory, no branch, no addition of zero. With one term that has an
-/// [unknown part](Parts::unknown), like a body, the Newton system is that term's own, and all others are kicks.
+/// [unknown part](crate::mechanics::Parts::unknown), like a body, the Newton system is that term's own, and all others are kicks.
 ///
 /// # Examples
 ///
@@ -109,21 +107,9 @@ pub(super) use added;
 /// A part of a sum: the sum of the parts of both terms, or the part of the one term that has it.
 macro_rules! of_those_with {
     ($part:ident: $both:expr, $first:expr, $second:expr $(,)?) => {
-        match (A::PARTS.$part, B::PARTS.$part) {
-            (true, true) => $both,
-            (true, false) => $first,
-            (false, _) => $second,
-        }
-    };
-    // The value of a term may lack a part that its type allows. If neither type has it, no code is generated.
-    ($constants:ident, $part:ident: $both:expr, $first:expr, $second:expr $(,)?) => {
-        if const { A::PARTS.$part && B::PARTS.$part } {
-            match (A::parts(&$constants.0).$part, B::parts(&$constants.1).$part) {
-                (true, true) => $both,
-                (true, false) => $first,
-                (false, _) => $second,
-            }
-        } else if const { A::PARTS.$part } {
+        if const { A::FACTS.parts.$part && B::FACTS.parts.$part } {
+            $both
+        } else if const { A::FACTS.parts.$part } {
             $first
         } else {
             $second
@@ -142,53 +128,9 @@ where
     type Constants = (A::Constants, B::Constants);
     type StepTerms = (A::StepTerms, B::StepTerms);
 
-    const PARTS: Parts = A::PARTS.or(B::PARTS);
-    const DENOMINATORS: u32 = of_those_with!(
-        unknown: if A::DENOMINATORS < B::DENOMINATORS { B::DENOMINATORS } else { A::DENOMINATORS },
-        A::DENOMINATORS,
-        B::DENOMINATORS,
-    );
-    const APART: Blocks = of_those_with!(unknown: A::APART.or(B::APART), A::APART, B::APART);
-    const LINKS_NEIGHBOURS: bool = A::LINKS_NEIGHBOURS || B::LINKS_NEIGHBOURS;
-    const INERTIA_IS_CONSTANT: bool = A::INERTIA_IS_CONSTANT && B::INERTIA_IS_CONSTANT;
-    const IS_QUADRATIC: bool = A::IS_QUADRATIC && B::IS_QUADRATIC;
-    const OPERATIONS: Operations = Operations {
-        step: A::OPERATIONS.step.saturating_add(B::OPERATIONS.step),
-        iteration: of_those_with!(
-            unknown: A::OPERATIONS.iteration.saturating_add(B::OPERATIONS.iteration),
-            A::OPERATIONS.iteration,
-            B::OPERATIONS.iteration,
-        ),
-    };
+    const FACTS: Facts = A::FACTS.or(B::FACTS);
     const DERIVATION: &'static str = "the sum of two effects: their momentum maps, diamonds, unknown parts, kicks, \
                                       Jacobians and energies, each added; see DERIVATION of either\n";
-
-    fn derivation(&self) -> String {
-        // A blank line between the derivations of two terms; an inner sum has its own.
-        format!("{}\n{}", self.first.derivation(), self.second.derivation())
-    }
-
-    fn has_constant_inertia(&self) -> bool {
-        self.first.has_constant_inertia() && self.second.has_constant_inertia()
-    }
-
-    fn is_quadratic(&self) -> bool {
-        self.first.is_quadratic() && self.second.is_quadratic()
-    }
-
-    fn denominators(constants: &Self::Constants) -> u32 {
-        let (first, second) = (A::denominators(&constants.0), B::denominators(&constants.1));
-        of_those_with!(constants, unknown: first.max(second), first, second)
-    }
-
-    fn parts(constants: &Self::Constants) -> Parts {
-        A::parts(&constants.0).or(B::parts(&constants.1))
-    }
-
-    fn apart(constants: &Self::Constants) -> Blocks {
-        let (first, second) = (A::apart(&constants.0), B::apart(&constants.1));
-        of_those_with!(constants, unknown: first.or(second), first, second)
-    }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Self::Scalar>) {
         self.first.describe(visitor);
@@ -218,7 +160,7 @@ where
 
     fn kick_before(constants: &Self::Constants, w: &Self::Advected) -> Vector<Self> {
         of_those_with!(
-            constants, kick_before: A::kick_before(&constants.0, &w.0) + B::kick_before(&constants.1, &w.1),
+            kick_before: A::kick_before(&constants.0, &w.0) + B::kick_before(&constants.1, &w.1),
             A::kick_before(&constants.0, &w.0),
             B::kick_before(&constants.1, &w.1),
         )
@@ -231,7 +173,7 @@ where
     ) -> Option<Vector<Self>> {
         let first = || A::kick_derivative(&constants.0, &w.0, velocity);
         let second = || B::kick_derivative(&constants.1, &w.1, velocity);
-        of_those_with!(constants, kick_before: Some(first()? + second()?), first(), second())
+        of_those_with!(kick_before: Some(first()? + second()?), first(), second())
     }
 
     /// The first term takes its part of the right side `a`, the second the remainder.
@@ -250,13 +192,13 @@ where
         half: &Vector<Self>,
     ) -> (Vector<Self>, Square<Self>) {
         of_those_with!(
-            constants, unknown: {
+            unknown: {
                 let raised = Vector::<Self>::raised;
                 let first = A::newton_system(&constants.0, &terms.0, half);
                 let second = B::newton_system(&constants.1, &terms.1, half);
-                let both = Self::denominators(constants);
-                let first = raised(&first.0, &first.1, both - A::denominators(&constants.0), half);
-                let second = raised(&second.0, &second.1, both - B::denominators(&constants.1), half);
+                let both = Self::FACTS.denominators;
+                let first = raised(&first.0, &first.1, both - A::FACTS.denominators, half);
+                let second = raised(&second.0, &second.1, both - B::FACTS.denominators, half);
                 (first.0 + second.0, first.1 + second.1)
             },
             A::newton_system(&constants.0, &terms.0, half),
@@ -270,7 +212,7 @@ where
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
         of_those_with!(
-            constants, unknown: update_of::<Self>(constants, terms, half),
+            unknown: update_of::<Self>(constants, terms, half),
             A::newton_update(&constants.0, &terms.0, half),
             B::newton_update(&constants.1, &terms.1, half),
         )
@@ -283,8 +225,8 @@ where
         links: &mut Links<Self>,
     ) -> (Vector<Self>, Square<Self>) {
         of_those_with!(
-            constants, unknown: {
-                let both = Self::denominators(constants);
+            unknown: {
+                let both = Self::FACTS.denominators;
                 let first = linked::<A>(&constants.0, &terms.0, (half, both), links);
                 let second = linked::<B>(&constants.1, &terms.1, (half, both), links);
                 (first.0 + second.0, first.1 + second.1)
@@ -296,7 +238,7 @@ where
 
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
         of_those_with!(
-            constants, unknown: Self::newton_system(constants, terms, half).0,
+            unknown: Self::newton_system(constants, terms, half).0,
             A::newton_residual(&constants.0, &terms.0, half),
             B::newton_residual(&constants.1, &terms.1, half),
         )
@@ -304,7 +246,7 @@ where
 
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
         of_those_with!(
-            constants, kick_after: A::kick_after(&constants.0, increment, &next.0) + B::kick_after(&constants.1, increment, &next.1),
+            kick_after: A::kick_after(&constants.0, increment, &next.0) + B::kick_after(&constants.1, increment, &next.1),
             A::kick_after(&constants.0, increment, &next.0),
             B::kick_after(&constants.1, increment, &next.1),
         )
@@ -319,7 +261,7 @@ fn linked<E: Effect>(
     (half, denominators): (&Vector<E>, u32),
     links: &mut Links<E>,
 ) -> (Vector<E>, Square<E>) {
-    let power = denominators - E::denominators(constants);
+    let power = denominators - E::FACTS.denominators;
     if power == 0 {
         return E::newton_linked(constants, terms, half, links);
     }
@@ -335,10 +277,6 @@ where
     B: DiscreteLagrangian<Scalar = A::Scalar, Group = A::Group, Retraction = A::Retraction>,
 {
     const SELF_ADJOINT: bool = A::SELF_ADJOINT && B::SELF_ADJOINT;
-
-    fn is_self_adjoint(&self) -> bool {
-        self.first.is_self_adjoint() && self.second.is_self_adjoint()
-    }
 
     added! {
         fn l_d(f: &Matrix<Self>, w, h: Self::Scalar) -> Self::Scalar;

@@ -8,8 +8,9 @@ use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField};
 
 /// The momentum of the body velocity `ξ`: `μ = ∂l/∂ξ`, which is `Jξ + s(w)` if `l` is quadratic.
 pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    if effect.is_quadratic() {
-        effect.inertia(w) * *velocity + effect.momentum_bias(w)
+    if effect.facts().is_quadratic {
+        let Limit { hessian, momentum, .. } = effect.limit(None, w);
+        hessian * *velocity + momentum
     } else {
         effect.limit(Some(velocity), w).momentum
     }
@@ -19,7 +20,7 @@ pub(crate) fn momentum_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, 
 /// `∂l/∂ξ = μ`. Lanes whose momentum is that of no velocity are NaN.
 pub(crate) fn velocity_of_momentum<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     let near_rest = velocity_near_rest(effect, momentum, w);
-    if effect.is_quadratic() {
+    if effect.facts().is_quadratic {
         return near_rest;
     }
     let (of, hessian) =
@@ -52,7 +53,8 @@ pub(crate) fn velocity_and_energy<E: Effect>(
     w: &E::Advected,
 ) -> (Vector<E>, Scalar<E>) {
     if let Some(known) = inertia {
-        let velocity = Vector::<E>::solve_again(&known.factors, known.det, &(*momentum - effect.momentum_bias(w)));
+        let velocity =
+            Vector::<E>::solve_again(&known.factors, known.det, &(*momentum - effect.limit(None, w).momentum));
         return (velocity, quadratic_energy(effect, &velocity, &known.matrix, w));
     }
     let velocity = velocity_of_momentum(effect, momentum, w);
@@ -61,13 +63,14 @@ pub(crate) fn velocity_and_energy<E: Effect>(
 
 /// The velocity by the inertia at rest: exact if `l` is quadratic, otherwise an estimate.
 fn velocity_near_rest<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
-    Vector::<E>::solve(&effect.inertia(w), &(*momentum - effect.momentum_bias(w))).0
+    let Limit { hessian, momentum: bias, .. } = effect.limit(None, w);
+    Vector::<E>::solve(&hessian, &(*momentum - bias)).0
 }
 
 /// An estimate of the body velocity of the momentum `μ`, which is finite even if no velocity has this momentum.
 pub(crate) fn estimated_velocity<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advected) -> Vector<E> {
     let velocity = velocity_of_momentum(effect, momentum, w);
-    if effect.is_quadratic() || velocity.is_finite() {
+    if effect.facts().is_quadratic || velocity.is_finite() {
         return velocity;
     }
     // NaN isn't equal to itself, so lanes with NaN are replaced.
@@ -102,7 +105,7 @@ pub(crate) fn energy<E: Effect>(effect: &E, momentum: &Vector<E>, w: &E::Advecte
 
 /// The energy at a known velocity.
 fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advected) -> Scalar<E> {
-    if !effect.is_quadratic() {
+    if !effect.facts().is_quadratic {
         let Limit { l, momentum, .. } = effect.limit(Some(velocity), w);
         return velocity.dot(&momentum) - l;
     }
@@ -111,12 +114,12 @@ fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advect
 
 #[hot]
 fn quadratic_energy<E: Effect>(effect: &E, velocity: &Vector<E>, inertia: &Square<E>, w: &E::Advected) -> Scalar<E> {
-    velocity.dot(&(*inertia * *velocity)) * real(0.5) + effect.potential(w)
+    velocity.dot(&(*inertia * *velocity)) * real(0.5) - effect.limit(None, w).l
 }
 
 /// The inertia, if it is the same for all configurations.
 pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, SetupError> {
-    if effect.has_constant_inertia() && effect.is_quadratic() {
+    if effect.facts().has_constant_inertia && effect.facts().is_quadratic {
         Ok(effect.inertia(&effect.advected()))
     } else {
         Err(SetupError::VaryingInertia)

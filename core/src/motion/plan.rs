@@ -99,7 +99,7 @@ pub trait Plan<S: Effect>: Sized {
 
     /// The energy, J, if the plan defines the inertia.
     fn energy(&self, scene: &S, motion: &MotionOf<S>) -> Scalar<S> {
-        self.velocity(scene, motion).dot(&motion.momentum) * real(0.5) + scene.potential(&motion.advected)
+        self.velocity(scene, motion).dot(&motion.momentum) * real(0.5) - scene.limit(None, &motion.advected).l
     }
 
     /// Whether the lanes of a memory can be stepped together. A memory of a single body always can.

@@ -61,11 +61,11 @@ impl<'a, L: Effect> CalledEquation<'a, L> {
 
 impl<L: Effect> System<Group<L>> for CalledEquation<'_, L> {
     fn pattern(&self) -> Pattern {
-        pattern::<L>(self.problem.constants)
+        pattern::<L>()
     }
 
     fn newton_update(&self, half: &Vector<L>) -> Iteration<Group<L>> {
-        if const { L::LINKS_NEIGHBOURS } {
+        if const { L::FACTS.links_neighbours } {
             return update_of::<L>(self.problem.constants, &self.terms, half);
         }
         let (residual, jacobian) = self.newton_system(half);
@@ -88,7 +88,7 @@ impl<L: Effect> Equation<Group<L>> for CalledEquation<'_, L> {
     }
 
     fn momentum_jacobian(&self, half: &Vector<L>) -> Option<Square<L>> {
-        if const { L::LINKS_NEIGHBOURS } {
+        if const { L::FACTS.links_neighbours } {
             return None;
         }
         let Problem { scene, w, h, .. } = *self.problem;

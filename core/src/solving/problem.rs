@@ -36,7 +36,7 @@ pub(super) struct InlinedEquation<'a, L: Effect> {
 #[hot]
 impl<L: Effect> System<Group<L>> for InlinedEquation<'_, L> {
     fn pattern(&self) -> Pattern {
-        pattern::<L>(self.constants)
+        pattern::<L>()
     }
 
     fn newton_update(&self, half: &Vector<L>) -> Iteration<Group<L>> {

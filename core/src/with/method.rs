@@ -375,9 +375,7 @@ impl Method {
         match self.scheme {
             Scheme::Splitting(scheme) => self.wrapped(Stepper::split(scene, h, flow, scheme)?),
             Scheme::Processed(scheme) => self.wrapped(Stepper::processed(scene, h, flow, scheme)?),
-            _ if S::parts(&scene.constants(1.0)).kick_before => {
-                refused("is for a body without a potential; take a splitting")
-            }
+            _ if scene.facts().parts.kick_before => refused("is for a body without a potential; take a splitting"),
             _ => self.wrapped(Stepper::split(scene, h, flow, SplittingScheme::STRANG)?),
         }
     }
@@ -440,7 +438,7 @@ impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for SO3 {
         }
         // Six stages don't fill the machine's vectors, and take longer than eight.
         let collocations = [Stages::Four, Stages::Eight].map(Scheme::Collocation);
-        if !S::parts(&scene.constants(1.0)).kick_before {
+        if !scene.facts().parts.kick_before {
             return [Scheme::Exact].into_iter().chain(collocations).collect();
         }
         let has_gradient = has_force_gradient(scene);

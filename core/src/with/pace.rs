@@ -67,7 +67,7 @@ impl<S: Effect<Scalar = f64>, P: Pacable<S>> Stepper<S, P> {
 /// The pace `s(w)`, from the potential `s (V − E_0)` with a vast `E_0`.
 #[hot]
 fn pace<S: Effect<Scalar = f64>>(scene: &S, w: &S::Advected) -> f64 {
-    scene.with_energy(w, VAST).map_or(f64::NAN, |(w, _)| -scene.potential(&w) / VAST)
+    scene.with_energy(w, VAST).map_or(f64::NAN, |(w, _)| scene.limit(None, &w).l / VAST)
 }
 
 impl<S: Effect<Scalar = f64>, P: Pacable<S>> Plan<S> for PacedStep<P> {

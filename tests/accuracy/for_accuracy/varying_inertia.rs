@@ -26,7 +26,7 @@ where
     S: Scene<Scalar = f64, Group = G> + ContinuousLagrangian<Scalar = f64, Group = G>,
     G: Steppable<S>,
 {
-    assert!(!S::INERTIA_IS_CONSTANT);
+    assert!(!S::FACTS.has_constant_inertia);
     let (horizon, system) = (1.0, RightHandSide::new(scene.clone()).unwrap());
     let mut exact = system.state(&attitude, &momentum);
     runge_kutta::run(|y, rate| system.rate(y, rate).unwrap(), &mut exact, horizon, 8000);

@@ -28,7 +28,7 @@ pub fn assert_stages<E: Force<Scalar = f64, Group: Group>>(force: &E, random: &m
     let a: Vector<E> = random.sample();
     let terms = E::step_terms(&constants, &a, &w);
     let (residual, jacobian) = E::newton_system(&constants, &terms, &half);
-    let factor = 0.5 * h * (1.0 + half.dot(&half)).powi(E::DENOMINATORS.cast_signed());
+    let factor = 0.5 * h * (1.0 + half.dot(&half)).powi(E::FACTS.denominators.cast_signed());
     let missed = norm(&(residual - (kick - before - a) * factor));
     assert!(missed < 1e-13 * factor * (1.0 + norm(&before)), "{missed:e}");
     for j in 0..E::Group::DIMENSION {

@@ -65,7 +65,7 @@ fn multiplied<L: DiscreteLagrangian<Scalar = f64, Group: Group>>(
         .chunks(of_body)
         .flat_map(|y| {
             let denominator = 1.0 + y.iter().map(|y| y * y).sum::<f64>();
-            std::iter::repeat_n(0.5 * h * denominator.powi(L::DENOMINATORS.cast_signed()), of_body)
+            std::iter::repeat_n(0.5 * h * denominator.powi(L::FACTS.denominators.cast_signed()), of_body)
         })
         .collect();
     let most = factors.iter().copied().fold(0.0, f64::max);

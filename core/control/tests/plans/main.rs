@@ -5,13 +5,15 @@
 use std::f64::consts::{PI, TAU};
 
 use liestep::effects::{Gravity, RigidBody};
-use liestep::gradients::Input;
+use liestep::gradients::{Input, Plant};
 use liestep::groups::{LieGroup as _, SE3};
 use liestep::laws::samples::Random;
-use liestep::mechanics::{Effect as _, Regular, SecondDerivatives, Sum, Term as _, WithKinetic};
+use liestep::mechanics::{Effect as _, Sum, Term as _};
+use liestep::motion::Propagator as _;
+use liestep::with::Method;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, force, lagrangian};
 use liestep_control::{Control, ControlError, ControlPlan, Cost, Target, Verdict};
-use liestep_late::{Declaration, Late, numbers};
+use liestep_late::{Declaration, Whole, numbers};
 use nalgebra::{Matrix4, SVector, UnitQuaternion, Vector3, Vector4};
 
 mod estimates;
@@ -311,13 +313,9 @@ fn progress() {
     assert_eq!(short.solve().expect("a task").verdict, Verdict::Exhausted);
 }
 
-/// The cost of a turn of some scene.
-fn cost<S: SecondDerivatives<Scalar = f64, Group = SO3> + Regular + Clone>(scene: S) -> f64 {
-    let stepper = Stepper::new(scene, 0.1).expect("a stepper");
-    let start = stepper.start(turned([0.4, 0.0, 0.0]), Vector3::zeros()).expect("a start");
-    let end = SO3::from_euler_angles(0.3, 1.5, 0.2);
-    let plan = Control::new(&stepper, start, 20, Target::rest(end)).bounds(|_, _| (-4.0, 4.0)).solve();
-    let plan = plan.expect("a task");
+/// The least cost of a turn to this target.
+fn cost<P: Plant>(stepper: &P, start: P::State, target: Target<P::Attitude, P::Vector>) -> f64 {
+    let plan = Control::new(stepper, start, 20, target).bounds(|_, _| (-4.0, 4.0)).solve().expect("a task");
     assert_eq!(plan.verdict, Verdict::Converged, "{:?}", plan.residual);
     plan.cost
 }
@@ -329,9 +327,17 @@ fn a_text_is_planned_as_what_is_compiled() {
     let top = RigidBody { J_d } + Gravity { m: 0.5, g: 2.0, rho: Vector3::new(0.1, 0.0, 0.3), up: Vector3::z() };
     let terms =
         [RigidBody::<f64>::DECLARATION, Gravity::<f64>::DECLARATION].map(Declaration::parse).map(Result::unwrap);
-    let late = Declaration::sum(&terms).and_then(Late::<SO3, ((), Vector3<f64>), WithKinetic>::of);
-    let late = late.and_then(|late| late.with_all(&numbers(&top))?.differentiable()).expect("a text");
-    let costs = [cost(top), cost(late)];
+    let declaration = Declaration::sum(&terms).expect("a sum");
+    let values = declaration.described(&numbers(&top)).expect("numbers");
+    let whole: Whole = Whole::of(declaration, &values, 0.1, Method::default()).expect("a stepper");
+    let stepper = Stepper::new(top, 0.1).expect("a stepper");
+    let (attitude, end) = (turned([0.4, 0.0, 0.0]), SO3::from_euler_angles(0.3, 1.5, 0.2));
+    let rows = |attitude: SO3| attitude.as_matrix().transpose().as_slice().to_vec();
+    let at_rest = Target { attitude: Some(rows(end)), momentum: Some(vec![0.0; 3]) };
+    let costs = [
+        cost(&stepper, stepper.start(attitude, Vector3::zeros()).expect("a start"), Target::rest(end)),
+        cost(&whole, whole.start(&rows(attitude), &[0.0; 3]).expect("a start"), at_rest),
+    ];
     assert!(costs.iter().all(|cost| (cost / 1.473_736_859_111_866 - 1.0).abs() < 1e-12), "{costs:?}");
 }
 

@@ -43,7 +43,7 @@ impl<B: Backend<f64>> Codes<B> {
             list.push(program);
             Ok::<_, LateError>(())
         })?;
-        let mut each = ready_each::<f64, B>(&list)?.into_iter();
+        let mut each = ready_each::<B>(&list)?.into_iter();
         let code = programs.try_map(|_| each.next().ok_or(LateError::TooLarge))?;
         let length = |programs: [&Program; 2]| {
             let operations: usize = programs.iter().map(|program| program.operations.len()).sum();

@@ -34,7 +34,7 @@ impl<C: Send + Sync + 'static> Equations<C> {
         declaration.once(|| {
             let programs = Canonical::of(declaration).map_err(LateError::Step)?;
             let operations = programs.all()[1..].iter().map(|program| program.operations.len()).sum();
-            let all = ready_each::<f64, B>(&programs.all())?;
+            let all = ready_each::<B>(&programs.all())?;
             let [lifted, momentum, seen, rates] = all.try_into().map_err(|_| LateError::TooLarge)?;
             Ok(Self { lifted, momentum, seen, rates, operations })
         })

@@ -33,7 +33,7 @@ impl<B: Backend<f64>> Whole<B> {
         // The diamond of the Lagrangian at the identity for `h = 1` is the torque at rest, [RDAE, (1.12)].
         let declaration = self.declaration();
         let diamond = match &declaration.programs.lagrangian {
-            Some(terms) => ready_each::<f64, B>(&[&terms[3]])?.pop(),
+            Some(terms) => ready_each::<B>(&[&terms[3]])?.pop(),
             None => None,
         };
         let (codes, numbers) = (Arc::clone(&self.codes), Arc::clone(&self.numbers));

@@ -84,6 +84,9 @@ pub fn stepper<B: Backend<f64>>(
         _ if declaration.has_force && !has_own_steps => {
             return refused("needs a scene without a force; take the step, or leave the force out");
         }
+        (Scheme::Composition(_), _) if !declaration.is_self_adjoint => {
+            return Err(WholeError::Setup(SetupError::NotSelfAdjoint));
+        }
         _ => {}
     }
     let on_rotations = is_of_rotations::<B>(declaration)?;

@@ -7,15 +7,15 @@
 use std::sync::Arc;
 
 use liestep::groups::{CayleyRetraction, Retraction};
-use liestep::mechanics::{DiscreteLagrangian, Effect, Limit, Parts, SceneVisitor, Term, WithKinetic};
-use liestep::numbers::{Blocks, Entries};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Facts, Limit, SceneVisitor, Term, WithKinetic};
+use liestep::numbers::Entries;
 use liestep::{SO3, SetupError};
 use liestep_derivation::whole::in_directions;
-use liestep_derivation::{Array, Stages};
+use liestep_derivation::{Array, StagedDeclaration, Stages};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::code::Backend;
-use crate::declaration::{All, Declaration, Ready, ready};
+use crate::declaration::{Declaration, Ready, ready};
 use crate::error::LateError;
 
 /// The directions of space as seen from the body: the rows of the attitude.
@@ -23,7 +23,7 @@ type Directions = (Vector3<f64>, Vector3<f64>, Vector3<f64>);
 
 /// The code of the stages, by the directions of space.
 #[derive(Debug)]
-struct ByDirections<C>(All<C>);
+struct ByDirections<C>(Arc<Stages<Ready<C>>>);
 
 /// A declaration on SO(3) with the numbers of its parameters.
 #[derive(Debug)]
@@ -59,7 +59,7 @@ impl<B: Backend<f64>> RotatingScene<B> {
     pub(super) fn of(declaration: &'static Declaration, numbers: &[f64]) -> Result<Self, LateError> {
         let stages = declaration.once(|| {
             let programs = in_directions(declaration).map_err(LateError::Step)?;
-            Ok(ByDirections(Arc::new(ready::<f64, B>(&programs)?)))
+            Ok(ByDirections(Arc::new(ready::<B>(&programs)?)))
         })?;
         Ok(Self { declaration, stages: Arc::clone(&stages.0), numbers: numbers.into() })
     }
@@ -131,33 +131,13 @@ impl<B: Backend<f64>> Effect for RotatingScene<B> {
     type Constants = RotatingConstants<B>;
     type StepTerms = (Vector3<f64>, Directions);
 
-    const PARTS: Parts = Parts::ALL;
-    const INERTIA_IS_CONSTANT: bool = false;
-    const IS_QUADRATIC: bool = false;
+    const FACTS: Facts = Facts::ANY;
     const DERIVATION: &'static str = "a declaration that was read while the program runs; see its derivation\n";
 
-    fn derivation(&self) -> String {
-        self.declaration.derivation.clone()
-    }
-
-    fn has_constant_inertia(&self) -> bool {
-        self.declaration.has_constant_inertia
-    }
-
-    fn is_quadratic(&self) -> bool {
-        self.declaration.is_quadratic
-    }
-
-    fn denominators(constants: &Self::Constants) -> u32 {
-        constants.scene.declaration.denominators
-    }
-
-    fn parts(constants: &Self::Constants) -> Parts {
-        constants.scene.declaration.parts
-    }
-
-    fn apart(constants: &Self::Constants) -> Blocks {
-        constants.scene.declaration.apart
+    fn facts(&self) -> Facts {
+        let StagedDeclaration { denominators, has_constant_inertia, is_quadratic, .. } = **self.declaration;
+        let parts = self.declaration.parts;
+        Facts { parts, denominators, has_constant_inertia, is_quadratic, ..Self::FACTS }
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
@@ -276,12 +256,8 @@ fn iteration<B: Backend<f64>, const M: usize>(
 }
 
 impl<B: Backend<f64>> DiscreteLagrangian for RotatingScene<B> {
-    // Values answer by `is_self_adjoint`.
+    // Whoever asks for steps that undo each other asks the declaration first.
     const SELF_ADJOINT: bool = true;
-
-    fn is_self_adjoint(&self) -> bool {
-        self.declaration.is_self_adjoint
-    }
 
     fn l_d(&self, f: &Matrix3<f64>, w: &Directions, h: f64) -> f64 {
         self.of_lagrangian(0, (f, w, h))[0]

@@ -23,7 +23,7 @@ impl<B: Backend<f64>> TangentCode<B> {
     pub(super) fn of(declaration: &'static Declaration) -> Result<Arc<Self>, LateError> {
         declaration.once(|| {
             let program = WholeStep::tangent(declaration).map_err(LateError::Step)?;
-            let code = ready_each::<f64, B>(&[&program])?.pop();
+            let code = ready_each::<B>(&[&program])?.pop();
             code.map(Self).ok_or(LateError::TooLarge)
         })
     }

@@ -7,7 +7,7 @@ use liestep::mechanics::{Effect, Inertia};
 use liestep::motion::{AnyStepper, Integrator as _, Propagator};
 use liestep::with::{Clock, densities};
 use liestep::{SO3, StepError, Stepper};
-use liestep_late::{Declaration, Late, Varied, Whole};
+use liestep_late::{Declaration, Varied, Whole};
 use nalgebra::{Matrix3, Vector3};
 
 use super::{IDENTITY, top, whole};
@@ -64,10 +64,7 @@ fn turning_values_are_those_of_the_typed_stepper() {
 
 #[test]
 fn a_density_is_that_of_the_typed_stepper() {
-    let declaration = Declaration::parse(FullTop::DECLARATION).expect("a declaration");
-    let late = || Late::<SO3, Vector3<f64>>::of(declaration).unwrap();
-    let scene = late().with_all(&liestep_late::numbers(&top())).expect("numbers");
-    let typed = Stepper::new(scene.clone(), 0.02).unwrap().with_density(densities::turn(scene, 0.5)).into_any();
+    let typed = Stepper::new(top(), 0.02).unwrap().with_density(densities::turn(top(), 0.5)).into_any();
     let whole = whole(0.02, "step");
     let varied = whole.turning_evenly(0.5).expect("a stepper");
     same(&varied, &typed, 5_000, 1e-9);
@@ -272,8 +269,7 @@ struct Orbit {
 
 /// A stepper of a compiled declaration's text.
 fn of_text<E: Effect<Scalar = f64>>(effect: &E, h: f64) -> Whole {
-    let declaration = Declaration::parse(E::DECLARATION).expect("a declaration");
-    let numbers = declaration.described(&liestep_late::numbers(effect)).expect("numbers");
+    let (declaration, numbers) = Declaration::like(effect).expect("a declaration");
     Whole::of(declaration, &numbers, h, "step".parse().unwrap()).expect("a stepper")
 }
 

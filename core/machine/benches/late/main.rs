@@ -1,8 +1,8 @@
 //! A declaration that is read while a program runs, beside the compiled one:
 //! `cargo bench -p liestep-machine --features cranelift`.
 //!
-//! Times of a step, in those of the compiled step: the typed step of a text, and the whole step on slices. Then the time from
-//! a text to the first step, and from each text of the repository to its machine code; `-- instructions` counts those of a
+//! Times of a step, in those of the compiled step, of a text by machine code and interpreted. Then the time from a text to the
+//! first step, and from each text of the repository to its machine code; `-- instructions` counts those of a
 //! step, by valgrind.
 
 #[path = "../../../../tests/benches/kernels/kernel.rs"]
@@ -18,14 +18,11 @@ use declarations::{
     TopOnCart, TwoBodies, UnderwaterBody,
 };
 use liestep::effects::{Gravity, RigidBody};
-use liestep::groups::{Advected, CayleyRetraction, Retraction};
-use liestep::mechanics::{Effect, Inertia, Regular, WithKinetic};
+use liestep::mechanics::{Effect, Inertia, Regular};
 use liestep::motion::{AnyStepper, Batch, Batchable, Integrator, Propagator as _};
 use liestep::with::Method;
 use liestep::{SO3, StateOf, Stepper};
-use liestep_late::{
-    Backend, BackendInLanes, Declaration, Interpreter, Late, LateError, Program, Slots, Whole, numbers,
-};
+use liestep_late::{Backend, BackendInLanes, Declaration, Interpreter, LateError, Program, Whole};
 use liestep_machine::Machine;
 use nalgebra::Vector3;
 use simba::simd::AutoF64x8;
@@ -36,8 +33,6 @@ use scenes::{Start, entries, links_and_mass, listed, tied_body, top, top_start};
 const STEP: f64 = 0.01;
 const LANES: u32 = 8;
 const EFFORT: Effort = Effort { batch: 1_000, rounds: 200, counted: 10_000 };
-
-type LateTop<B> = Late<SO3, Vector3<f64>, WithKinetic, B>;
 
 fn main() -> Result<(), Failure> {
     let words = arguments();
@@ -66,35 +61,26 @@ fn main() -> Result<(), Failure> {
 }
 
 /// The declaration compiled, and read in each way.
-fn kernels<S>(scene: S, start: Start<S>) -> Result<[Kernel; 6], Failure>
+fn kernels<S>(scene: S, start: Start<S>) -> Result<[Kernel; 3], Failure>
 where
     S: Regular<Scalar = f64> + Clone + 'static,
-    S::Advected: Advected<S::Group> + Slots,
-    CayleyRetraction: Retraction<S::Group>,
 {
-    let machine: Late<S::Group, S::Advected, WithKinetic, Machine> = Late::like(&scene)?;
-    let interpreted: Late<S::Group, S::Advected, WithKinetic, Interpreter> = Late::like(&scene)?;
-    let declaration = machine.declaration();
-    let values = declaration.described(&numbers(&scene))?;
+    let (declaration, values) = Declaration::like(&scene)?;
     Ok([
         alone("compiled", scene, start),
-        alone("machine code", machine.clone(), start),
-        alone("machine code, specialised", machine.specialised(), start),
-        on_slices::<Machine, S>("whole step, machine code", declaration, values.clone(), start),
-        alone("interpreted", interpreted, start),
-        on_slices::<Interpreter, S>("whole step, interpreted", declaration, values, start),
+        on_slices::<Machine, S>("machine code", declaration, values.clone(), start),
+        on_slices::<Interpreter, S>("interpreted", declaration, values, start),
     ])
 }
 
 /// The declaration in lanes.
 fn lanes(scene: &FullTop) -> Result<[Kernel; 3], Failure> {
-    let declaration = Declaration::parse(FullTop::DECLARATION)?;
-    let values = declaration.described(&numbers(scene))?;
+    let (declaration, values) = Declaration::like(scene)?;
     let FullTop { J_d, m, g, rho, up } = *scene;
     Ok([
-        in_lanes("compiled sum, in lanes of eight", RigidBody { J_d } + Gravity { m, g, rho, up }),
-        slices_in_lanes::<Interpreter>("whole step, interpreted in lanes", declaration, values.clone()),
-        slices_in_lanes::<Machine>("whole step, machine code in lanes", declaration, values),
+        in_lanes("compiled sum, in lanes", RigidBody { J_d } + Gravity { m, g, rho, up }),
+        slices_in_lanes::<Interpreter>("interpreted, in lanes", declaration, values.clone()),
+        slices_in_lanes::<Machine>("machine code, in lanes", declaration, values),
     ])
 }
 
@@ -137,7 +123,7 @@ fn alone<S: Regular<Scalar = f64> + Clone + 'static>(name: &str, scene: S, start
     })
 }
 
-/// The whole step of a declaration.
+/// The step of a declaration as data.
 fn on_slices<B: Backend<f64>, S: Regular<Scalar = f64> + 'static>(
     name: &str,
     declaration: &'static Declaration,
@@ -179,12 +165,14 @@ fn first_steps() {
     let times = (0..20).map(|number| {
         let text = FullTop::DECLARATION.replace("FullTop", &format!("Top{number}"));
         let clock = Instant::now();
-        let late: LateTop<Machine> = Late::parse(&text).expect("a declaration");
+        let declaration = Declaration::parse(&text).expect("a declaration");
         let inertia = [2.0, 0.0, 0.0, 0.0, 2.5, 0.0, 0.0, 0.0, 3.0];
         let numbers: [(&str, &[f64]); 5] =
             [("J_d", &inertia), ("m", &[1.5]), ("g", &[9.81]), ("rho", &[0.1, 0.0, 0.4]), ("up", &[0.0, 0.0, 1.0])];
-        let late = numbers.iter().try_fold(late, |late, (name, value)| late.with(name, value)).expect("numbers");
-        let (stepper, mut state) = started(late, top_start()).expect("a start");
+        let values = declaration.numbers(&numbers).expect("numbers");
+        let stepper = Whole::<Machine>::of(declaration, &values, STEP, Method::default()).expect("a stepper");
+        let (attitude, velocity) = top_start();
+        let mut state = stepper.start(&entries(&attitude), &listed(&velocity)).expect("a start");
         stepper.step(&mut state).expect("a step");
         clock.elapsed().as_secs_f64() * 1e3
     });

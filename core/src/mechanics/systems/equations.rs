@@ -1,13 +1,13 @@
 //! The effect of terms placed in a system of bodies: sums over their places.
 
-use alloc::string::String;
 use core::fmt::Debug;
 
 use super::places::{At, Places};
 use super::{Placement, TermConstants, term_at};
 use crate::groups::Retraction;
 use crate::mechanics::description::SceneVisitor;
-use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Parts, Square, Vector, pattern};
+use crate::mechanics::effect::{Effect, Limit, Links, Matrix, NewtonUpdate, Square, Vector, pattern};
+use crate::mechanics::facts::Facts;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::operations::Operations;
 use crate::numbers::{Blocks, Coordinates as _, real};
@@ -34,21 +34,17 @@ where
         &self.terms[term_at::<M>(at.place)]
     }
 
-    /// Residual and Jacobian at each place, multiplied by the largest power of the Cayley
-    /// [denominator](Effect::denominators).
+    /// Residual and Jacobian at each place.
     #[hot]
     fn systems(
         constants: &TermConstants<E, M>,
         terms: &P::Of<E::StepTerms>,
         half: &Vector<Self>,
     ) -> impl Fn(At) -> (Vector<E>, Square<E>) {
-        let most = Self::denominators(constants);
         #[cfg_attr(not(debug_assertions), inline(always))]
         move |at| {
             let (constants, _) = &constants[term_at::<M>(at.place)];
-            let half = P::components(half, at);
-            let (residual, jacobian) = E::newton_system(constants, &terms.as_ref()[at.place], &half);
-            Vector::<E>::raised(&residual, &jacobian, most - E::denominators(constants), &half)
+            E::newton_system(constants, &terms.as_ref()[at.place], &P::components(half, at))
         }
     }
 }
@@ -65,43 +61,17 @@ where
     type Constants = TermConstants<E, M>;
     type StepTerms = P::Of<E::StepTerms>;
 
-    const PARTS: Parts = E::PARTS;
-    const DENOMINATORS: u32 = E::DENOMINATORS;
-    const INERTIA_IS_CONSTANT: bool = E::INERTIA_IS_CONSTANT;
-    const IS_QUADRATIC: bool = E::IS_QUADRATIC;
-    // Elimination fills the blocks of bodies by those between neighbours.
-    const APART: Blocks = if P::LINKS_NEIGHBOURS { Blocks::WHOLE } else { E::APART };
-    const LINKS_NEIGHBOURS: bool = P::LINKS_NEIGHBOURS;
-    const OPERATIONS: Operations = Operations {
-        step: E::OPERATIONS.step.saturating_mul(places_of::<P, E>()),
-        iteration: E::OPERATIONS.iteration.saturating_mul(places_of::<P, E>()),
+    const FACTS: Facts = Facts {
+        // Elimination fills the blocks of bodies by those between neighbours.
+        apart: if P::LINKS_NEIGHBOURS { Blocks::WHOLE } else { E::FACTS.apart },
+        links_neighbours: P::LINKS_NEIGHBOURS,
+        operations: Operations {
+            step: E::FACTS.operations.step.saturating_mul(places_of::<P, E>()),
+            iteration: E::FACTS.operations.iteration.saturating_mul(places_of::<P, E>()),
+        },
+        ..E::FACTS
     };
     const DERIVATION: &'static str = "a term at places of a system; see its DERIVATION\n";
-
-    fn derivation(&self) -> String {
-        self.terms.first().map(E::derivation).unwrap_or_default()
-    }
-
-    fn has_constant_inertia(&self) -> bool {
-        self.terms.iter().all(E::has_constant_inertia)
-    }
-
-    fn is_quadratic(&self) -> bool {
-        self.terms.iter().all(E::is_quadratic)
-    }
-
-    fn denominators(constants: &Self::Constants) -> u32 {
-        constants.iter().map(|(constants, _)| E::denominators(constants)).max().unwrap_or(0)
-    }
-
-    // One term for all places may have fewer parts than its type; several have those of the type.
-    fn parts(constants: &Self::Constants) -> Parts {
-        if M == 1 { E::parts(&constants[0].0) } else { Self::PARTS }
-    }
-
-    fn apart(constants: &Self::Constants) -> Blocks {
-        if M == 1 && !P::LINKS_NEIGHBOURS { E::apart(&constants[0].0) } else { Self::APART }
-    }
 
     #[allow(clippy::cast_precision_loss)] // far fewer than a float counts
     #[inline]
@@ -207,19 +177,15 @@ where
         terms: &Self::StepTerms,
         half: &Vector<Self>,
     ) -> NewtonUpdate<Vector<Self>, Square<Self>, Self::Scalar> {
-        P::newton_update(pattern::<Self>(constants), Self::systems(constants, terms, half))
+        P::newton_update(pattern::<Self>(), Self::systems(constants, terms, half))
     }
 
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
-        let most = Self::denominators(constants);
         P::sum(
             #[cfg_attr(not(debug_assertions), inline(always))]
             |at| {
                 let (constants, _) = &constants[term_at::<M>(at.place)];
-                let half = P::components(half, at);
-                let residual = E::newton_residual(constants, &terms.as_ref()[at.place], &half);
-                let zero = Vector::<E>::zero();
-                Vector::<E>::raised(&residual, &zero.outer(&zero), most - E::denominators(constants), &half).0
+                E::newton_residual(constants, &terms.as_ref()[at.place], &P::components(half, at))
             },
         )
     }
@@ -258,10 +224,6 @@ where
     E::Retraction: Retraction<P::Group>,
 {
     const SELF_ADJOINT: bool = E::SELF_ADJOINT;
-
-    fn is_self_adjoint(&self) -> bool {
-        self.terms.iter().all(E::is_self_adjoint)
-    }
 
     summed! {
         total: l_d discrete_energy -> Self::Scalar;

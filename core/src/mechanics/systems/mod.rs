@@ -108,17 +108,17 @@ const fn check<P: Places<E>, E: Effect, const M: usize>() {
         return;
     }
     assert!(
-        !E::PARTS.unknown || !E::Kinetic::IS_THERE,
+        !E::FACTS.parts.unknown || !E::Kinetic::IS_THERE,
         "between the bodies of a system only potentials are possible: this term couples their velocities; declare all of \
          these bodies as one product, `group(F_1 = SO3, F_2 = SO3, …)`, or take `liestep::methods::Chain`"
     );
     assert!(
-        P::LINKS_NEIGHBOURS || !E::PARTS.unknown,
+        P::LINKS_NEIGHBOURS || !E::FACTS.parts.unknown,
         "this term depends on where two bodies are within the step: put it at neighbours in a row, by \
          `Coupling::<N>::of`, or take the means of what it has at the ends of the step"
     );
     assert!(
-        !P::LINKS_NEIGHBOURS || (E::IS_QUADRATIC && E::DENOMINATORS == 0),
+        !P::LINKS_NEIGHBOURS || (E::FACTS.is_quadratic && E::FACTS.denominators == 0),
         "a term with cleared denominators, or one that isn't quadratic in the velocity, can't join neighbours"
     );
 }

@@ -94,7 +94,7 @@ where
         const {
             assert!(N > 0, "a chain has a link");
             assert!(
-                !S::PARTS.unknown,
+                !S::FACTS.parts.unknown,
                 "links are moved by potentials of the ends of a step; their inertia is their own"
             );
         }
@@ -120,7 +120,8 @@ where
         now: &Motion<[SO3; N], S::Advected>,
         work: &mut [Work<R>; N],
     ) -> Components<N> {
-        let kick = if S::PARTS.kick_before { S::kick_before(&self.constants, &now.advected) } else { Bodies::zero() };
+        let kick =
+            if S::FACTS.parts.kick_before { S::kick_before(&self.constants, &now.advected) } else { Bodies::zero() };
         self.place(zero, &now.attitude, work);
         for (k, work) in work.iter_mut().enumerate() {
             work.target = zero.of(padded(&((now.momentum.0[k] + kick.0[k]) * self.h)));
@@ -166,8 +167,11 @@ where
         let (now, inverse_step) = (motion.now(), 1.0 / self.h);
         let increment = filled!([Matrix3::zeros(); N], |k| Matrix3::from_columns(&work[k].increment.0.map(vector)));
         let advected = motion.turned(&increment);
-        let mut change =
-            if S::PARTS.kick_after { S::kick_after(&self.constants, &increment, &advected) } else { Bodies::zero() };
+        let mut change = if S::FACTS.parts.kick_after {
+            S::kick_after(&self.constants, &increment, &advected)
+        } else {
+            Bodies::zero()
+        };
         let (zero, mut momentum) = (work[0].u.of([0.0; 4]), now.momentum);
         let (mut beyond, inverse_step) = (zero, zero.of([inverse_step; 4]));
         for (k, work) in work.iter().enumerate().rev() {
@@ -344,7 +348,7 @@ where
     #[allow(clippy::cast_possible_truncation)] // far fewer
     fn cost(&self) -> Cost {
         let links = N as u32;
-        let (step, iteration) = (S::OPERATIONS.step + links * OF_A_LINK.step, links * OF_A_LINK.iteration);
+        let (step, iteration) = (S::FACTS.operations.step + links * OF_A_LINK.step, links * OF_A_LINK.iteration);
         Cost::of_stages(Operations { step, iteration }, 1)
     }
 }

@@ -122,7 +122,7 @@ impl<S: Effect> Stepper<S> {
     where
         S: DiscreteLagrangian + Regular,
     {
-        if !(S::SELF_ADJOINT && scene.is_self_adjoint()) {
+        if !S::SELF_ADJOINT {
             return Err(SetupError::NotSelfAdjoint);
         }
         let plan = Composition::new(&scene, h, scheme)?;
@@ -202,7 +202,7 @@ impl<S: Effect> Plan<S> for Composition<S> {
     }
 
     fn cost(&self) -> Cost {
-        Cost::of_stages(S::OPERATIONS, u32::try_from(self.stages.len()).unwrap_or(u32::MAX))
+        Cost::of_stages(S::FACTS.operations, u32::try_from(self.stages.len()).unwrap_or(u32::MAX))
     }
 }
 

@@ -62,7 +62,7 @@ impl<L: RigidScene<Scalar = f64>> Lift<L> {
         let [a, b, c, d] = times(&q, &turn);
         let [e, f, g, h] = times(&[e, f, g, h], &turn);
         // The compiler removes the rest if there is no potential.
-        if !L::PARTS.kick_before {
+        if !L::FACTS.parts.kick_before {
             return [a, b, c, d, e, f, g, h];
         }
         let scale = 2.0 / length_squared(place);

@@ -118,7 +118,8 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
         #[allow(clippy::cast_precision_loss)] // at most eight
         let pairs = PAIRS as f64;
         // The operations of both kicks, with fitted factors (see below).
-        let torque = if S::PARTS.kick_before { OF_PARAMETERS + 0.125 * (S::OPERATIONS.step as f64) } else { 0.0 };
+        let torque =
+            if S::FACTS.parts.kick_before { OF_PARAMETERS + 0.125 * (S::FACTS.operations.step as f64) } else { 0.0 };
         let iteration = 2.0 * pairs * (OF_RATES + torque + OF_A_SUM * pairs);
         Cost { step: OF_AN_UPDATE + OF_A_GUESS * pairs * pairs, iteration, fewest: 3, once: 0.0 }
     };

@@ -9,7 +9,7 @@ use super::part::BodyPart;
 use super::{Body, Increment};
 use crate::error::SetupError;
 use crate::groups::{Advected as _, CayleyRetraction, LieGroup, Pair, SquareOf};
-use crate::mechanics::{Effect, SceneVisitor};
+use crate::mechanics::{Effect, SceneVisitor, derivation};
 use crate::numbers::Coordinates as _;
 
 /// The blocks of a matrix of two bodies, row by row.
@@ -109,7 +109,7 @@ impl<E: Effect<Scalar = f64>> StepEffect<E> {
     fn newton_system(&self, now: &E::Group, a: &VectorOf<E>, half: &VectorOf<E>) -> (VectorOf<E>, SquareOf<E::Group>) {
         let terms = E::step_terms(&self.constants, a, &self.seen(now));
         let (residual, jacobian) = E::newton_system(&self.constants, &terms, half);
-        let power = E::denominators(&self.constants);
+        let power = E::FACTS.denominators;
         if power == 0 {
             return (residual, jacobian);
         }
@@ -123,7 +123,7 @@ impl<E: Effect<Scalar = f64>> StepEffect<E> {
     fn newton_residual(&self, now: &E::Group, a: &VectorOf<E>, half: &VectorOf<E>) -> VectorOf<E> {
         let terms = E::step_terms(&self.constants, a, &self.seen(now));
         let residual = E::newton_residual(&self.constants, &terms, half);
-        match E::denominators(&self.constants) {
+        match E::FACTS.denominators {
             0 => residual,
             power => residual * (1.0 / (half.dot(half) + 1.0).simd_powi(power.cast_signed())),
         }
@@ -145,7 +145,7 @@ where
     E::Constants: Send + Sync,
     E::Advected: Send + Sync,
 {
-    const { assert!(E::IS_QUADRATIC, "{}", NOT_QUADRATIC) }
+    const { assert!(E::FACTS.is_quadratic, "{}", NOT_QUADRATIC) }
     Arc::new(OnBody(StepEffect::of(Arc::new(term), 1.0)))
 }
 
@@ -156,7 +156,7 @@ where
     E::Constants: Send + Sync,
     E::Advected: Send + Sync,
 {
-    const { assert!(E::IS_QUADRATIC, "{}", NOT_QUADRATIC) }
+    const { assert!(E::FACTS.is_quadratic, "{}", NOT_QUADRATIC) }
     Arc::new(OnPair(StepEffect::of(Arc::new(term), 1.0)))
 }
 
@@ -179,20 +179,20 @@ where
     }
 
     fn has_unknown(&self) -> bool {
-        E::parts(&self.0.constants).unknown
+        E::FACTS.parts.unknown
     }
 
     fn kick_before(&self, now: &Body) -> Option<Vector6<f64>> {
         let StepEffect { constants, .. } = &self.0;
         let kick = || E::Group::in_body(&E::kick_before(constants, &self.0.seen(&E::Group::of(now))));
-        E::parts(constants).kick_before.then(kick)
+        E::FACTS.parts.kick_before.then(kick)
     }
 
     fn kick_after(&self, increment: &Increment, next: &Body) -> Option<Vector6<f64>> {
         let StepEffect { constants, .. } = &self.0;
         let increment = || E::Group::of_increment(increment);
         let kick = || E::Group::in_body(&E::kick_after(constants, &increment(), &self.0.seen(&E::Group::of(next))));
-        E::parts(constants).kick_after.then(kick)
+        E::FACTS.parts.kick_after.then(kick)
     }
 
     fn newton_system(&self, now: &Body, a: &Vector6<f64>, half: &Vector6<f64>) -> (Vector6<f64>, Matrix6<f64>) {
@@ -218,7 +218,7 @@ where
     }
 
     fn derivation(&self) -> String {
-        self.0.term.derivation()
+        derivation(&*self.0.term)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {
@@ -260,18 +260,18 @@ where
     }
 
     fn has_unknown(&self) -> bool {
-        E::parts(&self.0.constants).unknown
+        E::FACTS.parts.unknown
     }
 
     fn kick_before(&self, now: [&Body; 2]) -> Option<[Vector6<f64>; 2]> {
         let StepEffect { constants, .. } = &self.0;
         let kick = || apart::<E::Group>(&E::kick_before(constants, &self.0.seen(&both(now))));
-        E::parts(constants).kick_before.then(kick)
+        E::FACTS.parts.kick_before.then(kick)
     }
 
     fn kick_after(&self, increments: [&Increment; 2], next: [&Body; 2]) -> Option<[Vector6<f64>; 2]> {
         let StepEffect { constants, .. } = &self.0;
-        E::parts(constants).kick_after.then(|| {
+        E::FACTS.parts.kick_after.then(|| {
             let [first, second] = increments.map(<BodyOf<E> as BodyPart>::of_increment);
             let increment = E::Group::matrices(&first, &second);
             apart::<E::Group>(&E::kick_after(constants, &increment, &self.0.seen(&both(next))))
@@ -295,7 +295,7 @@ where
     }
 
     fn derivation(&self) -> String {
-        self.0.term.derivation()
+        derivation(&*self.0.term)
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<f64>) {

@@ -225,7 +225,7 @@ where
 
     // The initial guess has 49 more operations, and the difference of the momenta 3.
     const OPERATIONS: Operations =
-        Operations { step: L::OPERATIONS.step.saturating_add(52), iteration: L::OPERATIONS.iteration };
+        Operations { step: L::FACTS.operations.step.saturating_add(52), iteration: L::FACTS.operations.iteration };
 
     fn describe(flow: &Self, visitor: &mut dyn SceneVisitor<T>) {
         visitor.term("declared flow");
@@ -237,7 +237,7 @@ where
     }
 
     fn momentum_bias(flow: &Self) -> Vector3<T> {
-        Effect::momentum_bias(flow, &())
+        flow.limit(None, &()).momentum
     }
 
     fn drift(&self, h: T) -> Result<Self::Drift, SetupError> {

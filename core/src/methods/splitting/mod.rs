@@ -250,7 +250,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
 
     /// The operations of shares that aren't merged, besides their iterations.
     fn operations(shares: &StagesOf<S, K>) -> f64 {
-        let kick = 0.5 * f64::from(S::OPERATIONS.step);
+        let kick = 0.5 * f64::from(S::FACTS.operations.step);
         let kicks = shares.stages.iter().map(|stage| &stage.kick).chain([&shares.lead]).flatten();
         let of_kicks = kicks.map(|made| kick + made.mobility.map_or(0.0, |_| kick + OF_A_FORCE_GRADIENT));
         let drifts = count::<f64>(shares.stages.len());
@@ -438,7 +438,7 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
 
     fn cost(&self) -> Cost {
         let kicks: f64 = count(self.scheme.kicks());
-        let kick = 0.5 * f64::from(S::OPERATIONS.step);
+        let kick = 0.5 * f64::from(S::FACTS.operations.step);
         let gradients = count::<f64>(self.scheme.gradient_kicks()) * (kick + OF_A_FORCE_GRADIENT);
         let Operations { step, iteration } = K::OPERATIONS;
         let (step, turn) = match self.spin {

@@ -82,7 +82,7 @@ impl<S: Effect> OwnStep<S> {
                 let xi = S::Retraction::local_coordinates(f)?;
                 let half = xi * real(0.5);
                 let factor =
-                    (real::<Scalar<S>>(1.0) + half.dot(&half)).simd_powi(S::denominators(&constants).cast_signed());
+                    (real::<Scalar<S>>(1.0) + half.dot(&half)).simd_powi(scene.facts().denominators.cast_signed());
                 Some(newton_system::<S>(&constants, &terms, &half).0 * (real::<Scalar<S>>(2.0) / factor))
             };
             turning_limits::<Group<S>>(&unknown, &scene.inertia(advected))

@@ -50,7 +50,7 @@ impl<S: Effect> OwnStep<S> {
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
-        if scene.has_constant_inertia() {
+        if scene.facts().has_constant_inertia {
             check_inertia::<Group<S>>(&scene.inertia(&scene.advected()))?;
         }
         let constants = scene.constants(h);
@@ -68,7 +68,7 @@ impl<S: Effect> OwnStep<S> {
         let at_rest = (0..<Group<S> as LieGroup>::DIMENSION).fold(at_rest, |product, _| product / h);
         // An inertia that varies with the configuration may be singular here, but not at the start.
         let is_product = !<Group<S> as LieGroup>::FACTORS.is_whole() || <Group<S> as LieGroup>::BODIES > 1;
-        let is_in_range = if scene.has_constant_inertia() && !is_product {
+        let is_in_range = if scene.facts().has_constant_inertia && !is_product {
             is_finite(at_rest) && !at_rest.simd_eq(real(0.0)).any()
         } else {
             is_finite(trace / h)
@@ -157,19 +157,19 @@ impl<S: Effect> OwnStep<S> {
             // In `a` the kick is rounded to the digits of the momentum; the carry should compensate that, so the kick
             // is computed anew.
             let mut kicks = None;
-            if const { S::PARTS.kick_before } && S::parts(&self.constants).kick_before {
+            if const { S::FACTS.parts.kick_before } {
                 kicks = Some(S::kick_before(&self.constants, advected));
             }
-            if const { S::PARTS.kick_after } && S::parts(&self.constants).kick_after {
+            if const { S::FACTS.parts.kick_after } {
                 let after = S::kick_after(&self.constants, &increment, &next);
                 kicks = Some(kicks.map_or(after, |before| before + after));
             }
             change = kicks.map_or(change, |kicks| change + kicks);
         } else {
-            if const { S::PARTS.kick_before } && S::parts(&self.constants).kick_before {
+            if const { S::FACTS.parts.kick_before } {
                 change = change + (*a - *momentum);
             }
-            if const { S::PARTS.kick_after } && S::parts(&self.constants).kick_after {
+            if const { S::FACTS.parts.kick_after } {
                 change = change + S::kick_after(&self.constants, &increment, &next);
             }
         }
@@ -185,10 +185,10 @@ impl<S: Effect> OwnStep<S> {
             a: kicked::<S>(&self.constants, momentum, w),
             w,
             h: self.h,
-            safe: if scene.has_constant_inertia() {
+            safe: if scene.facts().has_constant_inertia {
                 self.safe
             } else {
-                safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>(&self.constants)).1)
+                safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>()).1)
             },
         }
     }
@@ -239,7 +239,7 @@ impl<S: Effect> Plan<S> for OwnStep<S> {
     }
 
     fn cost(&self) -> Cost {
-        Cost::of_stages(S::OPERATIONS, 1)
+        Cost::of_stages(S::FACTS.operations, 1)
     }
 }
 
@@ -289,11 +289,7 @@ pub(crate) fn half_coordinates<S: Effect>(scene: &S, motion: &MotionOf<S>, h: Sc
 /// The right-hand side `a = μ + kick_before(w)`.
 #[hot]
 fn kicked<S: Effect>(constants: &S::Constants, momentum: &Vector<S>, w: &S::Advected) -> Vector<S> {
-    if const { S::PARTS.kick_before } && S::parts(constants).kick_before {
-        *momentum + S::kick_before(constants, w)
-    } else {
-        *momentum
-    }
+    if const { S::FACTS.parts.kick_before } { *momentum + S::kick_before(constants, w) } else { *momentum }
 }
 
 /// The Newton Jacobian is that at rest plus a matrix of rank one that is proportional to the right-hand side. If the
@@ -306,5 +302,5 @@ fn jacobian_at_rest<S: Effect>(scene: &S, constants: &S::Constants) -> (Scalar<S
     let zero = Vector::<S>::zero();
     let terms = step_terms::<S>(constants, &zero, &scene.advected());
     let (_, jacobian) = newton_system::<S>(constants, &terms, &zero);
-    (Vector::<S>::factorise_with(&jacobian, pattern::<S>(constants)).1, Vector::<S>::trace(&jacobian))
+    (Vector::<S>::factorise_with(&jacobian, pattern::<S>()).1, Vector::<S>::trace(&jacobian))
 }

@@ -4,7 +4,7 @@ use alloc::string::String;
 
 use super::{StateOf, Stepper};
 use crate::groups::SO3;
-use crate::mechanics::{AxiallyInvariant, Effect, LeftInvariant, Scalar, Vector, energy};
+use crate::mechanics::{AxiallyInvariant, Effect, LeftInvariant, Scalar, Vector, derivation, energy};
 use crate::motion::plan::Plan;
 use crate::motion::summation::MotionOf;
 use crate::solving::Solvability;
@@ -22,7 +22,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The declaration of each term of the scene and all derived equations, as text.
     #[must_use]
     pub fn derivation(&self) -> String {
-        self.scene.derivation()
+        derivation(&self.scene)
     }
 
     /// The method, folded.

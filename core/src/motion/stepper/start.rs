@@ -33,7 +33,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         check_attitude(&attitude)?;
         let w = self.plan.advected(&self.scene, 0).seen_from(&attitude);
         let momentum = self.plan.momentum(&self.scene, &attitude, &velocity, &w);
-        if !self.scene.is_quadratic() {
+        if !self.scene.facts().is_quadratic {
             let found = self.plan.velocity(&self.scene, &Motion { attitude, momentum, advected: w, steps: 0 });
             check_velocity::<Scalar<S>, _>(&velocity, &found, &momentum, &self.scene.inertia(&w))?;
         }
@@ -57,10 +57,10 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
         let w = self.plan.advected(&self.scene, 0).seen_from(&attitude);
-        if !self.scene.has_constant_inertia() {
+        if !self.scene.facts().has_constant_inertia {
             check_inertia::<Group<S>>(&self.scene.inertia(&w))?;
         }
-        if !self.scene.is_quadratic() && !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
+        if !self.scene.facts().is_quadratic && !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
             return Err(SetupError::NoVelocity);
         }
         let state = self.begin(attitude, momentum);

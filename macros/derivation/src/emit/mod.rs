@@ -105,7 +105,7 @@ pub(crate) fn implementation(
     let private = &header.private;
     let span = Span::mixed_site();
     let types = header.types(kinetic(chosen), &stages.constants_type, &stages.step_terms_type);
-    let parts = stages::parts(&emitter, kernel);
+    let facts = stages::facts(&emitter, kernel);
     let is_force = declaration.role == Role::Force;
     let (name, mathematics) =
         if is_force { ("Force", TokenStream::new()) } else { ("DiscreteLagrangian", mathematics) };
@@ -135,7 +135,7 @@ pub(crate) fn implementation(
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
         #effect_of {
             #types
-            #parts
+            #facts
 
             #derivation
             #declared_text

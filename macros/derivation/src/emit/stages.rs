@@ -158,14 +158,12 @@ fn in_coordinates(
     )
 }
 
-/// The parts of a step that aren't zero, and the factor of the Newton system.
-pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
+/// The facts about the effect, and the exchange of its energy.
+pub(super) fn facts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
     let (span, private, derived) = (Span::mixed_site(), &emitter.header.private, emitter.derived);
     let [unknown, before, after] =
         [&derived.unknown, &derived.kick_before, &derived.kick_after].map(|part| !part.is_zero());
     let denominators = Literal::u32_unsuffixed(kernel.denominators);
-    let u32 = quote_spanned!(span=> #private::core::primitive::u32);
-    let bool = quote_spanned!(span=> #private::core::primitive::bool);
     let is_constant = !derived.inertia_varies();
     let ends = kernel.ends(&derived.group);
     let apart = (!ends.is_empty()).then(|| {
@@ -175,18 +173,21 @@ pub(super) fn parts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
             let size = Literal::usize_unsuffixed(derived.group.component_of(factor));
             quote_spanned!(span=> #blocks.then(#size, #whole))
         });
-        quote_spanned!(span=> const APART: #private::Blocks = #blocks;)
+        quote_spanned!(span=> apart: #blocks,)
     });
     let is_quadratic = !emitter.equations.is_some_and(|equations| equations.derived.inverse == Inverse::Nonlinear);
     let [step, iteration] = kernel.operations().map(Literal::u32_unsuffixed);
     let energy = with_energy(emitter);
     quote_spanned! {span=>
-        const PARTS: #private::Parts = #private::Parts { unknown: #unknown, kick_before: #before, kick_after: #after };
-        const DENOMINATORS: #u32 = #denominators;
-        const INERTIA_IS_CONSTANT: #bool = #is_constant;
-        const IS_QUADRATIC: #bool = #is_quadratic;
-        #apart
-        const OPERATIONS: #private::Operations = #private::Operations { step: #step, iteration: #iteration };
+        const FACTS: #private::Facts = #private::Facts {
+            parts: #private::Parts { unknown: #unknown, kick_before: #before, kick_after: #after },
+            denominators: #denominators,
+            has_constant_inertia: #is_constant,
+            is_quadratic: #is_quadratic,
+            #apart
+            operations: #private::Operations { step: #step, iteration: #iteration },
+            ..#private::Facts::ANY
+        };
         #energy
     }
 }

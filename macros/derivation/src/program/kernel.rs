@@ -57,7 +57,7 @@ impl Kernel {
         (1..group.factors().len()).filter(is_end).collect()
     }
 
-    /// The operations of a step without the solve and of an iteration, for `Effect::OPERATIONS`.
+    /// The operations of a step without the solve and of an iteration, for `Facts::operations`.
     pub fn operations(&self) -> [u32; 2] {
         let before = [self.kick_before.as_slice(), &self.residual, &self.jacobian].concat();
         let step = count(&self.graph, &before, Some(Stage::Step))

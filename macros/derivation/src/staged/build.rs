@@ -8,7 +8,7 @@ use crate::expand::Steps;
 use crate::judged::{Choice, Equations};
 use crate::mathematics::derive::Inverse;
 use crate::mathematics::symbolic::Expression;
-use crate::program::{Derivatives, Form, Graph, Handover, Node, NodeId, Outputs, along_directions, needed};
+use crate::program::{Form, Graph, Handover, Node, NodeId, Outputs, along_directions, needed};
 
 pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclaration {
     let Steps { chosen, equations, findings } = steps;
@@ -44,7 +44,6 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
         is_quadratic: !equations.as_ref().is_some_and(|equations| is_nonlinear(&equations)),
         is_self_adjoint: findings.self_adjointness.is_found(),
         in_increment: kernel.in_increment,
-        derivatives: findings.derivatives.as_ref().map(|found| derivatives(found, &sources)),
         blocks: kernel.ends(&derived.group).into_iter().map(|end| derived.group.component_of(end)).collect(),
         programs: Stages {
             constants: program(none, &constants.keys().copied().collect::<Vec<_>>()),
@@ -68,26 +67,6 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
             }),
         },
     }
-}
-
-fn derivatives(found: &Derivatives, sources: &Sources) -> [Program; 4] {
-    let Derivatives { blocks, by_turn, gradient, by_numbers: [_, by_carried], .. } = found;
-    let (mut graph, nothing) = (found.graph.clone(), Handover::new());
-    let zero = graph.zero();
-    let shapes = (0..sources.declaration.advected.len()).map(|index| carried(sources.declaration, index).shape);
-    let count: usize = shapes.map(|(rows, columns)| rows * columns).sum();
-    // Derivatives by numbers without effect aren't listed.
-    let all = |listed: &[(usize, Vec<NodeId>)], outputs: usize| -> Vec<NodeId> {
-        let of = |number| listed.iter().find(|(known, _)| *known == number).map(|(_, nodes)| nodes.clone());
-        (0..count).flat_map(|number| of(number).unwrap_or_else(|| vec![zero; outputs])).collect()
-    };
-    let outputs = [
-        blocks.as_flattened().concat(),
-        [blocks[0][0].as_slice(), by_turn].concat(),
-        [gradient.by_place.as_slice(), &all(&gradient.by_numbers[1], 1)].concat(),
-        all(by_carried, 2 * by_turn.len()),
-    ];
-    outputs.map(|outputs| program(&graph, sources, &nothing, &outputs))
 }
 
 fn at_velocity(declaration: &Declaration, equations: &Equations) -> [Program; 3] {

@@ -330,10 +330,6 @@ pub struct StagedDeclaration {
     pub blocks: Vec<usize>,
     /// The programs.
     pub programs: Stages<Program>,
-    /// The derivatives of a step by `F − I`, `w` and `h`, if they are requested, as in `SecondDerivatives`: the blocks;
-    /// matrix and right side of the adjoint's system, with `p` in the array of the velocity; its gradient by the place
-    /// and by `w`, with `u` in that of the target; and both momenta by each number of `w`.
-    pub derivatives: Option<[Program; 4]>,
 }
 
 /// The reason why nothing was derived.
@@ -367,7 +363,8 @@ pub fn staged(text: &TokenStream, most: u64) -> Result<(StagedDeclaration, u64),
 fn of_text(text: &TokenStream, errors: &mut Errors) -> Option<StagedDeclaration> {
     let (role, arguments, item) = parse::attribute_and_item(text, errors)?;
     let declaration = parse::declaration(role, &arguments, &item, errors)?;
-    let declaration = Declaration { is_text: true, ..declaration };
+    // The tangent map of a whole step is written from its programs, so no derivatives are derived.
+    let declaration = Declaration { is_text: true, gradients: None, ..declaration };
     match expand::judged(&declaration, errors)? {
         Judgement::Steps(steps) => Some(build::staged(&declaration, &steps)),
         Judgement::Continuous(_) | Judgement::Constraint(_) => {

@@ -59,18 +59,9 @@ type ValueOperation = Operation<Value>;
 pub struct Words {
     operations: Vec<ValueOperation>,
     known: BTreeMap<ValueOperation, Value>,
-    /// The evaluation of functions of known numbers, in a program that may differ by rounding.
-    applied: Option<fn(Function, f64) -> f64>,
 }
 
 impl Words {
-    /// A program whose functions of known numbers are folded, too, whose numerical factors are collected, and whose divisions by
-    /// a number are products: its results differ by rounding.
-    #[must_use]
-    pub fn rounded(applied: fn(Function, f64) -> f64) -> Self {
-        Self { applied: Some(applied), ..Self::default() }
-    }
-
     /// The number of operations so far.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -145,7 +136,6 @@ impl Words {
             (Some(0.0), _) => Value::ZERO,
             (Some(1.0), _) => b,
             (Some(-1.0), _) => self.negate(b),
-            (Some(number), _) if self.applied.is_some() => self.collected(number, b),
             _ => match (self.negated(a), self.negated(b)) {
                 (Some(a), Some(b)) => self.multiply(a, b),
                 (None, None) => self.push(ValueOperation::Multiply(a, b)),
@@ -157,34 +147,19 @@ impl Words {
         }
     }
 
-    /// A number times a value that may have a factor.
-    fn collected(&mut self, number: f64, b: Value) -> Value {
-        match self.made(b) {
-            Some(ValueOperation::Multiply(Value::Number(factor), c)) => {
-                self.multiply(Value::of(number * f64::from_bits(factor)), c)
-            }
-            Some(ValueOperation::Negate(c)) => self.multiply(Value::of(-number), c),
-            _ => self.push(ValueOperation::Multiply(Value::of(number), b)),
-        }
-    }
-
     /// `a / b`.
     pub fn divide(&mut self, a: Value, b: Value) -> Value {
         match (a.number(), b.number()) {
             (Some(a), Some(b)) => Value::of(a / b),
             (Some(0.0), _) => Value::ZERO,
             (_, Some(1.0)) => a,
-            (_, Some(b)) if self.applied.is_some() && (1.0 / b).is_normal() => self.multiply(a, Value::of(1.0 / b)),
             _ => self.push(ValueOperation::Divide(a, b)),
         }
     }
 
     /// A function of `a`.
     pub fn apply(&mut self, function: Function, a: Value) -> Value {
-        match (a.number(), self.applied) {
-            (Some(a), Some(applied)) => Value::of(applied(function, a)),
-            _ => self.push(ValueOperation::Apply(function, a)),
-        }
+        self.push(ValueOperation::Apply(function, a))
     }
 
     /// `Σ a_k b_k`, in this order.

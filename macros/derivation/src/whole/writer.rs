@@ -5,7 +5,7 @@ use super::factor::MatrixFactor;
 use super::matrix::Matrix;
 use super::solved::Pattern;
 use super::values::{Value, Words};
-use crate::staged::{Action, Array, Program, Source, StagedDeclaration};
+use crate::staged::{Array, Carried, Program, Source, StagedDeclaration};
 
 /// A declaration with the factors of its group.
 pub(super) struct Writer<'a> {
@@ -49,19 +49,10 @@ impl<'a> Writer<'a> {
 
     /// The value in space of the advected parameter with this number.
     pub(super) fn in_space(&self, at: usize) -> Matrix {
-        let (one, (rows, columns)) = (self.staged.carried[at], self.staged.carried[at].shape);
-        match (one.field, one.action) {
-            (Some(field), _) => {
-                let first: usize = self.staged.parameters[..field].iter().map(|p| p.kind.len()).sum();
-                Matrix::of(rows, columns, |i, j| Value::Input(Source::new(Array::Parameters, first + i * columns + j)))
-            }
-            // The directions of space, one after the other.
-            (None, Action::Covector(_)) => {
-                let number = self.staged.carried[..at].iter().filter(|other| **other == one).count() % rows;
-                Matrix::of(rows, columns, |i, _| Value::one_if(i == number))
-            }
-            (None, _) => Matrix::identity(rows),
-        }
+        let Carried { field, shape: (rows, columns), .. } = self.staged.carried[at];
+        let Some(field) = field else { return Matrix::identity(rows) };
+        let first: usize = self.staged.parameters[..field].iter().map(|p| p.kind.len()).sum();
+        Matrix::of(rows, columns, |i, j| Value::Input(Source::new(Array::Parameters, first + i * columns + j)))
     }
 
     /// `F − I` of all factors.

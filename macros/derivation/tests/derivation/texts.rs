@@ -218,6 +218,12 @@ fn answer(question: &str, text: &str, declared: &TokenDeclaration, others: &[(St
     if let Some(name) = question.strip_prefix("const ") {
         return constant(name, &declared.file()).unwrap_or_else(|| "none".to_owned());
     }
+    if let Some(name) = question.strip_prefix("fact ") {
+        let facts = constant("FACTS", &declared.file()).expect("facts");
+        let facts: syn::ExprStruct = syn::parse_str(&facts).expect("a struct");
+        let fact = facts.fields.into_iter().find(|field| field.member.to_token_stream().to_string() == name);
+        return fact.map_or("none".to_owned(), |fact| fact.expr.to_token_stream().to_string());
+    }
     if let Some(word) = question.strip_prefix("lines with ") {
         let mut found = Vec::new();
         lines_with(word, declared.expanded(), &mut found);

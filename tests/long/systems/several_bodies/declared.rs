@@ -14,7 +14,7 @@ type Group = (SO3, SO3);
 #[test]
 fn what_is_derived_is_what_is_declared() {
     check_derived(&DoublePendulum::asymmetric(), 5);
-    const { assert!(!DoublePendulum::<f64>::INERTIA_IS_CONSTANT) };
+    const { assert!(!DoublePendulum::<f64>::FACTS.has_constant_inertia) };
 }
 
 #[test]

@@ -213,7 +213,7 @@ fn two_bodies_that_attract_each_other() {
     composed.run(&mut state, 100).unwrap();
     assert!(error(&state.attitude()) < 1e-9 && (composed.velocity(&state) - end_velocity).amax() < 1e-8);
     // Potentials are at the ends of steps, so each body, and each translation, is solved separately.
-    assert_eq!(TwoBodies::<f64>::APART, <Pair as liestep::groups::LieGroup>::FACTORS);
+    assert_eq!(TwoBodies::<f64>::FACTS.apart, <Pair as liestep::groups::LieGroup>::FACTORS);
 }
 
 /// The relative changes of both bodies' momentum and angular momentum on an orbit without a close approach, with the

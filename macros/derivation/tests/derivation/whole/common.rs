@@ -167,7 +167,6 @@ pub(super) fn declared(factors: &[Generators], carried: Vec<Carried>) -> StagedD
             at_velocity: None,
             lagrangian: None,
         },
-        derivatives: None,
     }
 }
 

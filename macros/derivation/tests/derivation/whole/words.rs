@@ -52,13 +52,6 @@ fn folding_keeps_the_bits() {
         assert!(folded.operations.len() < program.operations.len());
         // The comparison takes zeros of both signs as equal.
         assert_eq!(run(&folded, &numbers), run(&program, &numbers));
-        let mut words = Words::rounded(Function::apply);
-        let outputs = words.append(&program, Value::Input);
-        let rounded = words.program(&outputs);
-        assert!(rounded.operations.len() <= folded.operations.len());
-        for (a, b) in run(&rounded, &numbers).iter().zip(run(&program, &numbers)) {
-            assert!((a - b).abs() <= 1e-13 * (1.0 + b.abs()), "{a} {b}");
-        }
     }
 }
 
@@ -84,18 +77,4 @@ fn zeros_ones_and_signs_are_left_out() {
     assert_eq!(words.len(), 4);
     let program = words.program(&[difference]);
     assert_eq!((program.inputs.len(), program.operations.len()), (2, 1));
-}
-
-#[test]
-fn rounded_words_collect_factors() {
-    let x = input(0);
-    let count = |mut words: Words| {
-        let half = words.multiply(Value::of(0.5), x);
-        let third = words.multiply(Value::of(3.0), half);
-        let quarter = words.divide(third, Value::of(4.0));
-        let root = words.apply(Function::Sqrt, Value::of(4.0));
-        let sum = words.add(quarter, root);
-        words.program(&[sum]).operations.len()
-    };
-    assert_eq!((count(Words::default()), count(Words::rounded(Function::apply))), (5, 2));
 }
