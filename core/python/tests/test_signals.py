@@ -129,6 +129,13 @@ def test_states_beside_signals_are_copied_and_pickle():
         assert all(other == state for other in others)
 
 
+@pytest.mark.parametrize("function", [grown, lambda t: grown(t)], ids=["by name", "without"])
+def test_a_run_beside_a_function_pickles(function):
+    run = heavy_top().with_(g=ls.signal(function)).stepper(0.01).run(velocity=[0.5, 2, 12], until=1)
+    again = pickle.loads(pickle.dumps(run))
+    assert (again.velocity == run.velocity).all() and again.error == run.error and 0 < run.error < 1
+
+
 def test_the_momentum_of_a_body_that_grows_stays():
     # Moments of 4 kg m² about the axis, and 0.5 more a second.
     moments = ls.signal([0, 10], [[3, 3, 4], [3, 3, 9]], between="lines")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -182,6 +183,14 @@ class Run(Motion):
         if self._estimate is not None:
             self._error, self._estimate = self._estimate(self), None
         return self._error
+
+    def __getstate__(self) -> dict[str, Any]:
+        try:
+            pickle.dumps(self._estimate)
+        except (pickle.PicklingError, AttributeError, TypeError):
+            # A signal by a function that doesn't pickle leaves no other runs.
+            return {**self.__dict__, "_error": self.error, "_estimate": None}
+        return self.__dict__
 
     @property
     def _said(self) -> str:
