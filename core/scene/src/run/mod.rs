@@ -4,6 +4,7 @@ pub(crate) mod bodies;
 pub(crate) mod choose;
 pub(crate) mod course;
 mod ends;
+mod events;
 pub(crate) mod make;
 mod motors;
 mod nearest;
