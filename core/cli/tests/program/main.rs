@@ -12,6 +12,7 @@ mod mutated;
 mod orbits;
 mod page;
 mod papers;
+mod pointing;
 mod readme;
 mod reference;
 mod runs;

@@ -88,6 +88,16 @@ impl Column {
         all
     }
 
+    /// The column of angles, rad, in these places of a sample; none without any.
+    pub(crate) fn of_angles<'a>(
+        key: &'static str,
+        names: impl Iterator<Item = &'a str>,
+        places: Range<usize>,
+    ) -> Option<Self> {
+        let names = names.map(|name| (name.to_owned(), "rad")).collect();
+        (!places.is_empty()).then_some(Self { key, names, numbers: Part(places) })
+    }
+
     /// The columns of a scene of several bodies.
     pub(crate) fn of_several_bodies() -> Vec<Self> {
         vec![

@@ -111,7 +111,7 @@ fn numbers(file: &SceneFile, J: &Inertia, body: Option<&LibraryBody>, time: f64)
     let [lagrangians, forces] =
         [&file.lagrangian, &file.force].map(|own| own.iter().flat_map(|own| own.numbers.iter().copied()));
     let body = body.iter().flat_map(|body| body.numbers.iter().copied());
-    let listed = file.effects().flat_map(|(_, table)| table.numbers(J, time));
+    let listed = file.effects().flat_map(|(_, table)| table.numbers(J, file.at(time)));
     body.chain(lagrangians).chain(listed).chain(forces).collect()
 }
 
@@ -136,8 +136,8 @@ pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Sto
 
 /// Runs this many steps of a stepper.
 fn by(stepper: &AnyStepper, file: &SceneFile, steps: u32, listeners: Listeners<'_>) -> Result<Run, Stop> {
-    let state = file.start.state(stepper).map_err(Stop::Start)?;
-    make(stepper, state, course(file, u64::from(steps)), |now| sample(&file.group, now), watches(file), listeners)
+    let (state, view) = (file.start.state(stepper).map_err(Stop::Start)?, file.view());
+    make(stepper, state, course(file, u64::from(steps)), |now| sample(&view, now), watches(file), listeners)
 }
 
 /// The stepper with the file's `step`, and the initial state.
@@ -180,7 +180,7 @@ fn over_time(file: &SceneFile, J: Inertia, h: f64, method: Method) -> Result<Any
     let Data { sum, numbers } = Data::of(file, &J)?;
     let course = SceneCourse { file: RefCell::new(file.clone()), J, body: LibraryBody::of(file, J), sum };
     let whole = |h| Whole::of(sum, &numbers, h, method).map_err(whole_error);
-    let clock = file.run.steps_per_orbit.and_then(|steps| file.turning().next()?.1.clock(steps).ok());
+    let clock = file.run.steps_per_orbit.and_then(|steps| file.orbit?.clock(steps).ok());
     let driven = match clock {
         None => whole(h)?.driven(course),
         Some((clock, _)) => whole(1.0)?.with_clock(clock).driven(course),
@@ -237,8 +237,8 @@ fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run
     let mut run = if let Some((file, step)) = refined(file, &choice) {
         by(&by_steps(&file, step)?, &file, FEWEST, listeners)?
     } else {
-        let state = file.start.state(&any).map_err(Stop::Start)?;
-        make(&any, state, course(file, choice.steps), |now| sample(&file.group, now), watches(file), listeners)?
+        let (state, view) = (file.start.state(&any).map_err(Stop::Start)?, file.view());
+        make(&any, state, course(file, choice.steps), |now| sample(&view, now), watches(file), listeners)?
     };
     run.choice = Some(choice);
     Ok(run)
