@@ -98,8 +98,8 @@ impl View {
 /// The last state of a body, for the summary of a run.
 pub(crate) fn at_the_end(view: &View, (attitude, velocity): ([f64; 4], Vector3<f64>), numbers: &[f64]) -> String {
     let list = |parts: &[f64]| parts.iter().map(|part| format!("{part:.6}")).collect::<Vec<_>>().join(", ");
-    let angles: String =
-        view.named(numbers).map(|(name, angle)| format!(", {name} {:.3} deg", angle.to_degrees())).collect();
+    let angle = |(name, angle): (&str, f64)| format!(", {name} {:.3} deg", angle.to_degrees());
+    let angles = view.named(numbers).map(angle).collect::<Vec<_>>().concat();
     let rates = velocity.map(f64::to_degrees);
     format!("\n  at the end quaternion [{}], velocity [{}] deg/s{angles}", list(&attitude), list(rates.as_slice()))
 }
