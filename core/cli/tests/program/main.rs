@@ -2,6 +2,7 @@
 
 mod called;
 mod conventions;
+mod devices;
 mod ensembles;
 mod groups;
 mod import;

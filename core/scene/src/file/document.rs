@@ -8,11 +8,12 @@ use liestep_derivation::Role;
 use liestep_late::{Declaration, LateError};
 use serde::Deserialize as _;
 use toml::Spanned;
-use toml::de::Deserializer;
+use toml::de::{DeValue, Deserializer};
 
 use crate::file::beginning::Beginning;
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
+use crate::file::control::{self, settle};
 use crate::file::effects::Table as _;
 use crate::file::group::Group;
 use crate::file::lagrangian::{DeclaredTerm, take};
@@ -31,6 +32,8 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut rest = document.clone();
     let over_time = over_time::take(&mut rest, path).map_err(located)?;
+    let of_value = |value: &Spanned<DeValue<'_>>| over_time::of_value(value, path);
+    let (mut control, mut wheel) = control::take(&mut rest, &of_value).map_err(located)?;
     let mut on = None;
     let lagrangian = take(&mut rest, Role::Lagrangian, &mut on).map_err(located)?;
     let force = take(&mut rest, Role::Force, &mut on).map_err(located)?;
@@ -47,13 +50,6 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     if let Some(start) = document.get_ref().get("start") {
         file.start = Beginning::read(start, &file.group, file.orbit.as_ref()).map_err(located)?;
     }
-    let view = file.view();
-    of_pointing(document, &view).map_err(located)?;
-    let events = document.get_ref().get("event").and_then(|events| events.get_ref().as_array());
-    for (number, event) in file.event.iter_mut().enumerate() {
-        let at = || events.and_then(|events| events.get(number)).map_or(0..0, Spanned::span);
-        event.placed(&view, &at).map_err(located)?;
-    }
     if let Some(steps) = file.run.steps_per_orbit {
         let wrong = |message: String| located((span(document, &["run", "steps_per_orbit"]), message));
         if has(document, "run", "step") || has(document, "run", "accuracy") {
@@ -66,13 +62,34 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
         let (_, step) = orbit.clock(steps).map_err(|error| wrong(error.to_string()))?;
         file.run.pace = Pace::Step { step, steps: equal_steps(step, file.run.duration).map_err(wrong)? };
     }
+    if let Pace::Step { step, .. } = file.run.pace {
+        settle(&mut control, &mut wheel, (step, file.orbit.is_some())).map_err(located)?;
+    }
+    (file.control, file.wheel) = (control, wheel);
+    let view = file.view();
+    of_pointing(document, &view).map_err(located)?;
+    let events = document.get_ref().get("event").and_then(|events| events.get_ref().as_array());
+    for (number, event) in file.event.iter_mut().enumerate() {
+        let at = || events.and_then(|events| events.get(number)).map_or(0..0, Spanned::span);
+        event.placed(&view, &at).map_err(located)?;
+    }
     at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
     file.over_time.iter().find_map(|one| of_signal(one, &file)).map_or(Ok(()), Err).map_err(located)?;
     if !file.group.is_rotation() && !has(document, "picture", "panels") {
         file.picture = SpherePicture::on_group();
     }
-    let default =
-        ["velocity", "spatial-momentum", "energy", "axis", "quaternion", "attitude", "pointing", "roll-pitch-yaw"];
+    let default = [
+        "velocity",
+        "spatial-momentum",
+        "energy",
+        "axis",
+        "quaternion",
+        "attitude",
+        "pointing",
+        "roll-pitch-yaw",
+        "wheel-speeds",
+        "control",
+    ];
     file.columns = file.output.columns(&view.columns(), &default).map_err(located)?;
     let at = |keys: &[&str]| place_of(text, &span(document, keys));
     let keys = ["accuracy", "steps_per_orbit"];
@@ -152,7 +169,7 @@ fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
 
 /// Conflicts between keys that are valid by themselves.
 fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
-    let of = [of_pace, of_orbit, of_density, of_method, of_picture];
+    let of = [of_pace, of_orbit, of_devices, of_density, of_method, of_picture];
     of.iter().find_map(|odds| odds(document, file))
 }
 
@@ -286,6 +303,24 @@ fn of_pointing(document: &Document<'_>, view: &View) -> Result<(), SpanMessage> 
         }
     }
     Ok(())
+}
+
+/// Conflicts with laws and wheels.
+fn of_devices(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
+    let span_of_law = file.control.first().map(|control| control.span.clone());
+    let at = span_of_law.or_else(|| file.wheel.first().map(|wheel| wheel.span.clone()))?;
+    let is_of_steps = matches!(file.run.pace, Pace::Step { .. }) && !file.has_steps_of_its_own();
+    let beside = [
+        (!file.group.is_rotation() || file.body.is_none(), at, "a `[body]`"),
+        (!is_of_steps, span(document, &["run"]), "a `step`, and neither an accuracy, a density nor steps per orbit"),
+        (
+            !matches!(file.run.method, Scheme::Step),
+            span(document, &["run", "method"]),
+            "the scene's own step: leave `method` out",
+        ),
+    ];
+    let (_, at, what) = beside.into_iter().find(|(is_odd, ..)| *is_odd)?;
+    Some((at, format!("laws and wheels are beside {what}")))
 }
 
 /// Conflicts with a density of steps.

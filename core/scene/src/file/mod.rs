@@ -3,6 +3,7 @@
 pub(crate) mod beginning;
 pub(crate) mod body;
 pub(crate) mod column;
+pub(crate) mod control;
 pub(crate) mod document;
 pub(crate) mod draws;
 pub(crate) mod effects;
@@ -14,6 +15,7 @@ pub(crate) mod joint;
 pub(crate) mod kepler;
 pub(crate) mod key;
 pub(crate) mod lagrangian;
+pub(crate) mod law;
 pub(crate) mod method;
 pub(crate) mod mistake;
 pub(crate) mod orbit;

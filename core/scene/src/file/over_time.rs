@@ -97,15 +97,14 @@ fn of_table(
     all: &mut Vec<OverTime>,
 ) -> Result<(), SpanMessage> {
     for (key, value) in table.iter_mut() {
-        let has = |key: &str| value.get_ref().get(key).is_some();
         let source = || ValueDeserializer::from(value.clone());
         // The text of a declaration isn't a parameter.
         let is_word = Nadir::deserialize(source()).is_ok() && !TEXTS.contains(&key.get_ref().as_ref());
-        let change = if has("times") || has("csv") {
-            Change::Signal(signal(value, path)?)
+        let change = if let Some(signal) = of_value(value, path)? {
+            Change::Signal(signal)
         } else if is_own && is_word {
             Change::Direction(of_scene(orbit, value)?)
-        } else if is_own && has("equator") {
+        } else if is_own && value.get_ref().get("equator").is_some() {
             let dipole = DipoleField::deserialize(source()).map_err(|error| in_value(value, &error))?;
             Change::Field(of_scene(orbit, value)?, dipole)
         } else {
@@ -132,6 +131,12 @@ const TEXTS: [&str; 7] = ["l", "l_d", "work", "group", "discretise", "velocity",
 fn of_scene(orbit: Option<&Spanned<DeValue<'_>>>, value: &Spanned<DeValue<'_>>) -> Result<Orbit, SpanMessage> {
     let orbit = orbit.ok_or_else(|| (value.span(), NO_ORBIT.to_owned()))?;
     Orbit::deserialize(ValueDeserializer::from(orbit.clone())).map_err(|error| in_value(orbit, &error))
+}
+
+/// The signal of a value, if it is one.
+pub(crate) fn of_value(value: &Spanned<DeValue<'_>>, path: &Path) -> Result<Option<Signal>, SpanMessage> {
+    let has = |key: &str| value.get_ref().get(key).is_some();
+    if has("times") || has("csv") { signal(value, path).map(Some) } else { Ok(None) }
 }
 
 fn signal(value: &Spanned<DeValue<'_>>, path: &Path) -> Result<Signal, SpanMessage> {

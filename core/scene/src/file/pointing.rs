@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde::Deserialize;
 
 use crate::file::column::Column;
+use crate::file::control::Wheel;
 use crate::file::euler::roll_pitch_yaw;
 use crate::file::group::Group;
 use crate::file::kepler::Orbit;
@@ -43,6 +44,10 @@ pub(crate) struct View {
     pub(crate) group: Group,
     pub(crate) orbit: Option<Orbit>,
     pub(crate) pointing: Arc<[Pointing]>,
+    pub(crate) wheels: Arc<[Wheel]>,
+    pub(crate) has_control: bool,
+    /// The number of entries that a state has for laws and wheels, before its last.
+    pub(crate) memory: usize,
 }
 
 impl View {
@@ -61,21 +66,47 @@ impl View {
         start..start + if self.orbit.is_some() && self.group.is_rotation() { 3 } else { 0 }
     }
 
-    /// The numbers of an attitude, body to space, at a time, s, in these places.
-    pub(crate) fn numbers(&self, attitude: &Matrix3<f64>, time: f64) -> Vec<f64> {
+    /// The places of the speeds of wheels.
+    fn speeds(&self) -> Range<usize> {
+        let start = self.local().end;
+        start..start + self.wheels.len()
+    }
+
+    /// The places of the torque of laws; empty without any.
+    fn control(&self) -> Range<usize> {
+        let start = self.speeds().end;
+        start..start + if self.has_control { 3 } else { 0 }
+    }
+
+    /// The numbers of an attitude, body to space, and a velocity, body frame, in these places; `state` is that of the
+    /// stepper.
+    pub(crate) fn numbers(
+        &self,
+        (attitude, velocity): (&Matrix3<f64>, &Vector3<f64>),
+        (time, state): (f64, &[f64]),
+    ) -> Vec<f64> {
+        let last = state.len().saturating_sub(1);
+        let memory = state.get(last.saturating_sub(self.memory)..last).unwrap_or_default();
+        let speed = |(wheel, momentum): (&Wheel, &f64)| momentum / wheel.inertia - velocity.dot(&wheel.axis);
+        let speeds = self.wheels.iter().zip(memory).map(speed);
+        let torque = memory.iter().skip(2 * self.wheels.len()).take(self.control().len()).copied();
         let now = Time { time, orbit: self.orbit.as_ref() };
         let angles = self.pointing.iter().map(|pointing| pointing.angle(attitude, now));
         let seen = self.orbit.map(|orbit| orbit.local_vertical(time).tr_mul(attitude));
         let local = seen.map(|seen| roll_pitch_yaw(&Rotation3::from_matrix_unchecked(seen)));
-        angles.chain(local.into_iter().flatten()).collect()
+        angles.chain(local.into_iter().flatten()).chain(speeds).chain(torque).collect()
     }
 
     /// The columns of a scene.
     pub(crate) fn columns(&self) -> Vec<Column> {
         let names = self.pointing.iter().map(|pointing| pointing.name.as_str());
-        let angles = Column::of_angles("pointing", names, self.angles());
-        let local = Column::of_angles("roll-pitch-yaw", Self::LOCAL.into_iter(), self.local());
-        Column::of_group(&self.group).into_iter().chain(angles).chain(local).collect()
+        let angles = Column::of_places("pointing", names, "rad", self.angles());
+        let local = Column::of_places("roll-pitch-yaw", Self::LOCAL.into_iter(), "rad", self.local());
+        let wheels: Vec<String> = self.wheels.iter().map(|wheel| format!("{}_speed", wheel.name)).collect();
+        let speeds = Column::of_places("wheel-speeds", wheels.iter().map(String::as_str), "rad/s", self.speeds());
+        let torques = ["control_x", "control_y", "control_z"].into_iter();
+        let control = Column::of_places("control", torques, "N m", self.control());
+        Column::of_group(&self.group).into_iter().chain(angles).chain(local).chain(speeds).chain(control).collect()
     }
 
     /// Whether the number of this place jumps somewhere, so that an event can't be its passage of a value: a quaternion

@@ -137,6 +137,10 @@ impl<'de, Q: Quantity> Deserialize<'de> for PositiveScalar<Q> {
     }
 }
 
+impl<Q> Triple<Q> {
+    pub(crate) const ZERO: Self = Self { value: Vector3::new(0.0, 0.0, 0.0), quantity: PhantomData };
+}
+
 impl<'de, Q: Quantity> Deserialize<'de> for Triple<Q> {
     fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
         let components = Vec::<Scalar<Q>>::deserialize(source)?;

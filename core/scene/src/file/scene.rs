@@ -13,6 +13,7 @@ use toml::de::{DeValue, Error, ValueDeserializer};
 use crate::file::beginning::Beginning;
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
+use crate::file::control::{self, Control, Wheel, entries};
 use crate::file::draws::SceneEnsemble;
 use crate::file::effects::{self, EFFECTS, EffectEntry, Table, effects};
 use crate::file::event::Event;
@@ -106,6 +107,10 @@ effects! { scene_file
     pub(crate) lagrangian: Vec<DeclaredTerm>,
     #[serde(default, deserialize_with = "taken")]
     pub(crate) force: Vec<DeclaredTerm>,
+    #[serde(default, deserialize_with = "control::taken")]
+    pub(crate) control: Vec<Control>,
+    #[serde(default, deserialize_with = "control::taken")]
+    pub(crate) wheel: Vec<Wheel>,
     /// The group of the scene.
     #[serde(skip)]
     pub(crate) group: Group,
@@ -239,7 +244,12 @@ impl SceneFile {
         let own = self.lagrangian.iter().map(|_| "a Lagrangian of its own".to_owned());
         let effects = self.effects().map(|(effect, _)| effect.name(" "));
         let force = self.force.iter().map(|_| "a force of its own".to_owned());
-        body.chain(own).chain(effects).chain(force).collect::<Vec<_>>().join(" + ")
+        let control = self.control.iter().map(|_| "a law".to_owned());
+        let wheels = (!self.wheel.is_empty()).then(|| match self.wheel.len() {
+            1 => "a wheel".to_owned(),
+            count => format!("{count} wheels"),
+        });
+        body.chain(own).chain(effects).chain(force).chain(control).chain(wheels).collect::<Vec<_>>().join(" + ")
     }
 
     /// The name of the first force.
@@ -254,9 +264,21 @@ impl SceneFile {
         self.effects().filter_map(|(effect, table)| Some([effect.key, table.on_orbit()?])).chain(own)
     }
 
+    /// Whether laws or wheels turn the body.
+    pub(crate) fn has_devices(&self) -> bool {
+        !self.control.is_empty() || !self.wheel.is_empty()
+    }
+
     /// The numbers that a sample has.
     pub(crate) fn view(&self) -> View {
-        View { group: self.group.clone(), orbit: self.orbit, pointing: self.pointing.clone().into() }
+        View {
+            group: self.group.clone(),
+            orbit: self.orbit,
+            pointing: self.pointing.clone().into(),
+            wheels: self.wheel.clone().into(),
+            has_control: !self.control.is_empty(),
+            memory: entries(&self.control, &self.wheel),
+        }
     }
 
     /// A time, s, with the orbit.

@@ -24,6 +24,9 @@ pub trait BodyIntegrator: Integrator<Scalar = f64> {
     /// The angular momentum, body frame, kg m²/s.
     fn momentum(motion: &Self::Motion) -> Vector3<f64>;
 
+    /// All numbers of the state.
+    fn numbers(motion: &Self::Motion) -> &[f64];
+
     /// The angular velocity, body frame, rad/s.
     fn rate(velocity: Self::Velocity) -> Vector3<f64>;
 
@@ -38,6 +41,10 @@ impl BodyIntegrator for AnyStepper {
 
     fn momentum(motion: &AnyMotion) -> Vector3<f64> {
         Vector3::from_column_slice(motion.momentum())
+    }
+
+    fn numbers(motion: &AnyMotion) -> &[f64] {
+        motion.numbers()
     }
 
     fn rate(velocity: Vec<f64>) -> Vector3<f64> {
@@ -60,7 +67,7 @@ pub(crate) fn sample<I: BodyIntegrator>(view: &View, now: &Moment<'_, I>) -> Sam
         let vectors = [body.velocity, body.momentum, angular_momentum];
         let vectors = vectors.iter().flat_map(Vector3::as_slice);
         let ends = [energy, body.attitude.defect()];
-        let seen = view.numbers(&body.matrix(), time);
+        let seen = view.numbers((&body.matrix(), &body.velocity), (time, I::numbers(now)));
         let numbers = body.quaternion.iter().chain(vectors).chain(&ends).chain(&seen).copied().collect();
         return Sample { time, energy, momentum, angular_momentum, gap, bodies: vec![body], numbers, quaternions };
     }

@@ -16,8 +16,9 @@ use crate::file::quantity::short;
 use crate::file::sample::Sample;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
-use crate::run::choose::{self, Whole};
+use crate::run::choose;
 use crate::run::course::{BodyIntegrator, MemberStart, sample};
+use crate::run::data::Whole;
 use crate::run::make::{Listeners, Run, Stop, fast_turn};
 
 impl SceneFile {
