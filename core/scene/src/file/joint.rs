@@ -102,7 +102,7 @@ impl Kind {
         self.has_axes() && self != Self::Universal
     }
 
-    fn turns_about_axis(self) -> bool {
+    pub(crate) fn turns_about_axis(self) -> bool {
         matches!(self, Self::Pin | Self::Cylinder | Self::Plane)
     }
 
@@ -137,6 +137,8 @@ pub(crate) type Names = Spanned<[Spanned<String>; 2]>;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct JointTable {
+    /// The name, by which programs reach it.
+    pub(crate) name: Option<Spanned<String>>,
     kind: Spanned<Kind>,
     pub(crate) bodies: Names,
     at: [Triple<Length>; 2],

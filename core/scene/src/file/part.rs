@@ -24,3 +24,10 @@ pub(crate) struct Between<T> {
     pub(crate) bodies: [Option<usize>; 2],
     pub(crate) of: T,
 }
+
+/// The joint's name in the file, and whether its bodies stand there in the other order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct JointName {
+    pub(crate) name: Option<String>,
+    pub(crate) is_swapped: bool,
+}

@@ -13,7 +13,7 @@ use crate::file::body::{INERTIA, InertiaRows, Kinetic, Moments, NonstandardMomen
 use crate::file::column::{Column, Output};
 use crate::file::joint::{Joint, JointTable, Names};
 use crate::file::mistake::{Mistake, SpanMessage, advised, place_of};
-use crate::file::part::{Between, SystemBody};
+use crate::file::part::{Between, JointName, SystemBody};
 use crate::file::picture::PlanePicture;
 use crate::file::placed::place;
 use crate::file::quantity::{
@@ -30,7 +30,7 @@ use crate::file::text::title;
 /// | | `title` |
 /// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile); without a position a body is placed by a joint with one that has a place |
 /// | `gravity` | `g`, m/s²; `up`, in space |
-/// | `[[joint]]` | `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
+/// | `[[joint]]` | `name`, if programs are to reach it; `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
 /// | | where the joint starts, of a body without a `position`: `angle` and `rate` about the axis, `shift`, m, and `speed`, m/s, along it, of the second body relative to the first, zero by default |
 /// | | in a joint that turns: `damping`, N m s; `stiffness`, N m/rad, with the angle at `rest`; a motor's `torque` about the axis, N m; dry `friction`: its `torque` and the rate `below` which it is viscous. In a slider: `damping`, N s/m; `stiffness`, N/m, with the shift at `rest`; a `force`, N |
 /// | `[[spring]]` | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
@@ -45,6 +45,8 @@ pub struct System {
     pub(crate) bodies: Vec<SystemBody>,
     pub(crate) gravity: Option<(f64, Vector3<f64>)>,
     pub(crate) joints: Vec<Between<Joint>>,
+    /// One for each joint.
+    pub(crate) joint_names: Vec<JointName>,
     pub(crate) springs: Vec<Between<Spring>>,
     pub(crate) step: f64,
     pub(crate) steps: u32,
@@ -221,6 +223,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         let message = format!("two columns of the table would be called `{name}`: give the body another name");
         return Err((names[body].clone(), message));
     }
+    let joint_names = joint_names(&table.joint, &called)?;
     let joints = table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies));
     let (joints, coordinates): (Vec<_>, Vec<_>) = joints.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
     let (placing, unplaced) = place(&mut bodies, &mut is_placed, &joints);
@@ -251,6 +254,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         bodies,
         gravity: table.gravity.map(|field| (field.g.value, field.up.0)),
         joints,
+        joint_names,
         springs,
         step,
         steps,
@@ -272,13 +276,40 @@ fn name_twice(columns: &[Column], bodies: &[&str]) -> Option<(usize, String)> {
     })
 }
 
+fn is_plain(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter))
+}
+
+/// The names of joints, which are different from each other and from those of bodies.
+fn joint_names(joints: &[Spanned<JointTable>], bodies: &[&str]) -> Result<Vec<JointName>, SpanMessage> {
+    let mut names: Vec<JointName> = Vec::new();
+    for joint in joints {
+        let JointTable { name, bodies: between, .. } = joint.get_ref();
+        let is_swapped = between.get_ref()[1].get_ref() == SPACE;
+        if let Some(name) = name {
+            let own = name.get_ref();
+            let refuse = |message: String| Err((name.span(), message));
+            if !is_plain(own) {
+                return refuse("the `name` of a joint has letters, digits, - and _ only".to_owned());
+            }
+            if own == SPACE || bodies.contains(&own.as_str()) {
+                return refuse(format!("a body and a joint are called `{own}`"));
+            }
+            if names.iter().any(|other| other.name.as_ref() == Some(own)) {
+                return refuse(format!("there are two joints called `{own}`"));
+            }
+        }
+        names.push(JointName { name: name.as_ref().map(|name| name.get_ref().clone()), is_swapped });
+    }
+    Ok(names)
+}
+
 /// A body, the place of its name, and whether it has a place in space.
 fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>, bool), SpanMessage> {
     let span = body.span();
     let BodyTable { name, m, moments, J_d, J, kinetic, position, moving, start } = body.into_inner();
     // The name of a body is the prefix of its columns.
-    let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);
-    if name.get_ref().is_empty() || !name.get_ref().chars().all(is_plain) {
+    if !is_plain(name.get_ref()) {
         return Err((name.span(), "the `name` of a body has letters, digits, - and _ only".to_owned()));
     }
     if name.get_ref() == SPACE {

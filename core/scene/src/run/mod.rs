@@ -7,6 +7,7 @@ pub(crate) mod data;
 pub(crate) mod devices;
 mod ends;
 pub(crate) mod make;
+mod motors;
 mod nearest;
 mod scene;
 mod second;

@@ -12,6 +12,7 @@ use crate::file::part::SystemBody;
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::system::System;
+use crate::run::course::MemberStart;
 use crate::run::make::{Course, Listeners, Note, Run, Stop, fast_turn, make, told};
 
 /// The quantity that violates a constraint, for messages.
@@ -81,8 +82,26 @@ impl System {
         first.map_err(|stop| self.mistake(stop))
     }
 
+    /// The stepper of the system, with its initial state.
+    ///
+    /// # Errors
+    ///
+    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the system can't be started.
+    pub fn stepper(&self) -> Result<MemberStart, Mistake> {
+        let start = || {
+            let (stepper, _) = self.multibody().map_err(Stop::Setup)?;
+            let state = self.start(&stepper).map_err(Stop::Start)?;
+            let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
+            self.check_springs(&places)?;
+            let any = AnyStepper::new(stepper);
+            let state = any.state_of(&state).ok_or_else(|| Stop::Other("a state of another system".to_owned()))?;
+            Ok((any, state))
+        };
+        start().map_err(|stop| self.mistake(stop))
+    }
+
     pub(crate) fn simulate(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Stop> {
-        let (stepper, left_out) = self.stepper().map_err(Stop::Setup)?;
+        let (stepper, left_out) = self.multibody().map_err(Stop::Setup)?;
         let state = self.start(&stepper).map_err(Stop::Start)?;
         let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
         let of_springs = self.check_springs(&places)?;
