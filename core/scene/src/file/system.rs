@@ -326,10 +326,13 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         let (span, MethodTable(scheme)) = (method.span(), method.into_inner());
         system.method = of_method(scheme, &system).map_err(|message| (span, message))?;
     }
+    let quaternions = quaternions(&all);
+    // A quaternion has two signs, and no values that are passed.
+    let jumps = |place: usize| quaternions.iter().any(|start| (*start..start + 4).contains(&place));
     for event in table.event {
         let span = event.span();
         let mut event = event.into_inner();
-        event.placed((&all, &quaternions(&all)), Err(SEVERAL), &|| span.clone())?;
+        event.placed((&all, &jumps), Err(SEVERAL), &|| span.clone())?;
         system.event.push(event);
     }
     Ok(system)
