@@ -1,13 +1,14 @@
-"""What Python adds to Rust: python measure.py BESIDE, where that is the example `beside` of this package, built.
+"""Times of this package: python measure.py [BESIDE], where that is the example `beside` of this package, built.
 
-Prints the seconds of a million steps and of 100,000 members from Python, and in Rust, in turns, and their ratios; and what
-an import takes.
+Prints the steps a second of a loop in Python with a torque each, and what an import takes; and with BESIDE the seconds of a
+million steps and of 100,000 members from Python, and in Rust, in turns, and their ratios.
 """
 
 import subprocess
 import sys
 import tempfile
 import time
+from typing import Any
 
 import numpy as np
 
@@ -40,6 +41,15 @@ def members_in_rust() -> float:
         return in_rust("members", folder)
 
 
+def loop(torque: Any, count: int = 200_000) -> float:
+    """Seconds of a step in a loop, with a torque each."""
+    state = TOP.stepper(0.01).start(velocity=[0.5, 2, 12])
+    begun = time.perf_counter()
+    for _ in range(count):
+        state.step(torque=torque)
+    return (time.perf_counter() - begun) / count
+
+
 def imported() -> float:
     """Seconds of an import, less those of Python itself."""
     def run(code: str) -> float:
@@ -50,8 +60,12 @@ def imported() -> float:
     return min(run("import liestep") for _ in range(7)) - min(run("pass") for _ in range(7))
 
 
-for name, python, rust in (("a million steps", steps, lambda: in_rust("steps")), ("100,000 members", members, members_in_rust)):
-    pairs = np.array([(python(), rust()) for _ in range(5)])
-    best = pairs.min(axis=0)
-    print(f"{name}: {best[0]:.2f} s from Python, {best[1]:.2f} s in Rust, ratio {best[0] / best[1]:.3f}")
+for name, torque in (("a list", [1e-6, 0.0, -1e-6]), ("an array", np.array([1e-6, 0.0, -1e-6]))):
+    print(f"a loop: {1 / min(loop(torque) for _ in range(5)):.3g} steps a second, each with {name} as its torque")
 print(f"an import: {1000 * imported():.0f} ms")
+if sys.argv[1:]:
+    beside = ("a million steps", steps, lambda: in_rust("steps")), ("100,000 members", members, members_in_rust)
+    for name, python, rust in beside:
+        pairs = np.array([(python(), rust()) for _ in range(5)])
+        best = pairs.min(axis=0)
+        print(f"{name}: {best[0]:.2f} s from Python, {best[1]:.2f} s in Rust, ratio {best[0] / best[1]:.3f}")

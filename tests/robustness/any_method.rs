@@ -102,6 +102,26 @@ where
     ));
 }
 
+/// Checks that a torque on numbers is that on types, to the bit.
+fn assert_is_forced_as_numbers<S, P>(name: &str, stepper: &Stepper<S, P>)
+where
+    S: Effect<Scalar = f64, Group = SO3> + Clone + 'static,
+    P: Plan<S, Kept: 'static> + Clone + 'static,
+{
+    let (erased, mut typed) = (stepper.clone().into_any(), started(stepper));
+    let mut state = erased.start_at(attitude(), VELOCITY).unwrap();
+    for torque in [Vector3::new(0.3, -0.2, 0.5), Vector3::new(-1.0, 0.1, 0.0), Vector3::zeros()] {
+        stepper.step_forced(&mut typed, &torque).unwrap();
+        erased.step_forced(&mut state, torque.as_slice()).unwrap();
+        assert_eq!(state.momentum(), typed.momentum().as_slice(), "{name}");
+    }
+    for wrong in [&[0.0; 2][..], &[0.0; 4], &[f64::NAN; 3]] {
+        let before = state.clone();
+        assert!(matches!(erased.step_forced(&mut state, wrong), Err(StepError::NonFinite { .. })), "{name}");
+        assert_eq!(state, before, "{name}");
+    }
+}
+
 /// Checks that the step of another method adopts a motion, and back.
 fn assert_adopts<S, P>(name: &str, stepper: &Stepper<S, P>)
 where
@@ -238,6 +258,7 @@ where
     P: Plan<S, Kept: 'static> + Clone + 'static,
 {
     assert_all(name, stepper, own);
+    assert_is_forced_as_numbers(name, stepper);
     assert_is_observed(name, &stepper.clone().or_substeps(2).into_any().on_group::<SO3, S::Advected>().unwrap());
     let substeps = stepper.clone().or_substeps(8);
     assert_all(&format!("{name}, or substeps"), &substeps, own);

@@ -8,7 +8,7 @@
 
 use std::time::Instant;
 
-use liestep::motion::{AnyStepper, Integrator as _};
+use liestep::motion::AnyStepper;
 use liestep::recording::Recorder;
 use liestep::with::Method;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
@@ -40,13 +40,8 @@ fn text() -> Result<(&'static Declaration, Vec<f64>), Error> {
             ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) - 0.5 * h * m * g * w.dot(&(rho + F * rho)))]
         struct Top { J_d: NonstandardInertia, m: f64, g: f64, rho: Vector3<f64>, up: Vector3<f64> }",
     )?;
-    let numbers: [(&str, &[f64]); 5] = [
-        ("J_d", &[2.0, 2.0, 1.0]),
-        ("m", &[1.0]),
-        ("g", &[9.81]),
-        ("rho", &[0.0, 0.0, 1.0]),
-        ("up", &[0.0, 0.0, 1.0]),
-    ];
+    let numbers: [(&str, &[f64]); 5] =
+        [("J_d", &[2.0, 2.0, 1.0]), ("m", &[1.0]), ("g", &[9.81]), ("rho", &[0.0, 0.0, 1.0]), ("up", &[0.0, 0.0, 1.0])];
     Ok((top, top.numbers(&numbers)?))
 }
 
@@ -80,7 +75,7 @@ fn main() -> Result<(), Error> {
         ["members", folder] => {
             let text = text()?;
             let make = move |member: &liestep_ensemble::Member<'_>| {
-                let stepper = machine(&text).map_err(|error| liestep_ensemble::EnsembleError::Other(error.to_string()))?;
+                let stepper = machine(&text).map_err(|error| liestep_ensemble::Failure::Other(error.to_string()))?;
                 let velocity = [0.0, 0.0, 12.0].iter().enumerate();
                 let velocity = velocity.map(|(k, mean)| member.normal(&format!("velocity.{}", k + 1), *mean, 0.1));
                 let state = stepper.start(&IDENTITY, &velocity.collect::<Vec<_>>())?;

@@ -56,11 +56,16 @@ impl From<Failure> for PyErr {
     fn from(failure: Failure) -> Self {
         Python::attach(|py| {
             let class = |name: &str| py.import("liestep.errors")?.getattr(name);
+            let words = |message: String| -> PyResult<String> {
+                py.import("liestep._words")?.getattr("in_python")?.call1((message,))?.extract()
+            };
             let raised = match failure {
                 Failure::Raised(error) => return error,
-                Failure::Of(name, message) => class(name).and_then(|class| class.call1((message,))),
+                Failure::Of(name, message) => class(name).and_then(|class| class.call1((words(message)?,))),
                 Failure::Text(mistakes) => {
-                    class("DeclarationError").and_then(|class| class.call_method1("of", (mistakes,)))
+                    let own = mistakes.into_iter().map(|(message, line, column)| Ok((words(message)?, line, column)));
+                    let own = own.collect::<PyResult<Vec<_>>>();
+                    class("DeclarationError").and_then(|class| class.call_method1("of", (own?,)))
                 }
                 Failure::File(mistake) => {
                     let (line, column) = mistake.place().unzip();

@@ -1,6 +1,7 @@
 //! Scenes from files.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use liestep::recording::{Column, Sink, SinkError};
 use liestep_scene::{Run, Scene, declaration};
@@ -8,6 +9,7 @@ use pyo3::prelude::*;
 
 use crate::failure::Failure;
 use crate::run::Signals;
+use crate::state::{Source, State};
 use crate::table::{Columns, Table};
 
 /// A scene, read from a file.
@@ -73,6 +75,21 @@ impl File {
             Scene::Body(scene) => scene.title(),
             Scene::System(system) => system.title(),
         }
+    }
+
+    /// The state at the start, for a loop.
+    fn start(&self) -> PyResult<State> {
+        let started = match &self.0 {
+            Scene::Body(scene) => scene.stepper(),
+            Scene::System(system) => system.stepper(),
+        };
+        let (_, state) = started.map_err(Failure::from)?;
+        self.resume(state.numbers().to_vec())
+    }
+
+    /// A state that continues another by its numbers.
+    fn resume(&self, numbers: Vec<f64>) -> PyResult<State> {
+        Ok(State::of(Arc::new(Source::File(self.0.clone())), numbers)?)
     }
 
     fn run(&self, py: Python<'_>) -> PyResult<FileRun> {

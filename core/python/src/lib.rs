@@ -1,6 +1,6 @@
 //! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
 //!
-//! `lib → {control, file, picture} → scene → ensemble → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
+//! `lib → {control, picture, file → state} → scene → {signal, ensemble} → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
 //! declares is stepped by any method, recorded into columns that `NumPy` and Arrow look at where they are, or drawn at random.
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
@@ -13,8 +13,12 @@ mod method;
 mod picture;
 mod run;
 mod scene;
+mod signal;
 mod start;
+mod state;
 mod table;
+
+use std::sync::Arc;
 
 use liestep::with::Scheme;
 use liestep_ensemble::share_of;
@@ -27,7 +31,9 @@ use crate::ensemble::{Draws, Members};
 use crate::failure::Failure;
 use crate::method::{Names, method};
 use crate::run::{Course, RunRecord};
-use crate::start::Start;
+use crate::signal::{Change, Signal};
+use crate::start::{Start, started};
+use crate::state::{Source, State};
 use crate::table::{Table, View};
 
 /// The declaration of a text.
@@ -74,6 +80,13 @@ impl Derivation {
         self.0.energy.is_some()
     }
 
+    /// For each value that is carried along the number of its parameter, unless it is a configuration, and how many numbers it
+    /// has.
+    #[getter]
+    fn carried(&self) -> Vec<(Option<usize>, usize)> {
+        self.0.carried.iter().map(|one| (one.field, one.shape.0 * one.shape.1)).collect()
+    }
+
     /// The names of the parameters, and how many numbers each has.
     #[getter]
     fn parameters(&self) -> Vec<(&'static str, usize)> {
@@ -97,9 +110,9 @@ struct Scene(scene::Scene);
 #[pymethods]
 impl Scene {
     #[new]
-    fn new(py: Python<'_>, terms: Vec<Term<'_>>) -> PyResult<Self> {
+    fn new(py: Python<'_>, terms: Vec<Term<'_>>, changes: Vec<Change>) -> PyResult<Self> {
         let (terms, numbers) = apart(terms);
-        Ok(Self(py.detach(|| scene::scene(&terms, &numbers))?))
+        Ok(Self(py.detach(|| scene::scene(&terms, &numbers, changes))?))
     }
 
     #[getter]
@@ -130,6 +143,21 @@ impl Scene {
         let method = method(&how)?;
         let recorded = py.detach(|| self.0.run((method, h), &start, &course))?;
         shown(py, recorded)
+    }
+
+    /// The state at a start, for a loop.
+    #[allow(clippy::needless_pass_by_value)]
+    fn start(&self, h: f64, how: Names, start: Start) -> PyResult<State> {
+        let method = (method(&how)?, h);
+        let stepper = self.0.stepper(method)?;
+        let numbers = started(&stepper, &start)?.numbers().to_vec();
+        Ok(State::of(Arc::new(Source::Declared(self.0.clone(), method)), numbers)?)
+    }
+
+    /// A state that continues another by its numbers.
+    #[allow(clippy::needless_pass_by_value)]
+    fn resume(&self, h: f64, how: Names, numbers: Vec<f64>) -> PyResult<State> {
+        Ok(State::of(Arc::new(Source::Declared(self.0.clone(), (method(&how)?, h))), numbers)?)
     }
 
     #[allow(clippy::needless_pass_by_value)]
@@ -212,7 +240,7 @@ fn share(text: &str) -> PyResult<(u64, u64)> {
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::{Derivation, Scene, Table, View, order, plan, schemes, share};
+    use super::{Derivation, Scene, Signal, State, Table, View, order, plan, schemes, share};
     #[pymodule_export]
     use crate::file::{File, FileRun, library};
     #[pymodule_export]

@@ -10,10 +10,12 @@ use pyo3::prelude::*;
 use crate::failure::Failure;
 use crate::table::Columns;
 
-/// An event: a quantity passes a value.
-#[derive(Clone, FromPyObject)]
+/// An event: a quantity, or a function of Python, passes a value.
+#[derive(FromPyObject)]
 pub(crate) struct Watch {
     quantity: String,
+    /// The function of the time, of the attitude with the rows of its matrices, of velocity, momentum and energy.
+    function: Option<Py<PyAny>>,
     value: f64,
     /// The direction of the event: 1 where the quantity rises, −1 where it falls, 0 for both.
     direction: i8,
@@ -63,6 +65,11 @@ impl Signals {
         let Err(error) = Python::attach(|py| py.check_signals()) else { return Ok(()) };
         self.raised.replace(Some(error));
         Err("Python asked for it")
+    }
+
+    /// Keeps an exception that ends the run.
+    fn raise(&self, error: PyErr) {
+        self.raised.replace(Some(error));
     }
 
     pub(crate) fn into_failure(self) -> Option<Failure> {
@@ -124,7 +131,8 @@ pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course)
         observed = observed.at(times.iter().copied(), row);
     }
     for (watch, table) in course.events.iter().zip(&tables) {
-        observed = observed.event(watch.kind(), watch.function(&stepper.layout().factors)?, |now| {
+        let function = watch.function(&stepper.layout().factors, &signals)?;
+        observed = observed.event(watch.kind(), function, |now| {
             let (recorder, rising) = &mut *table.borrow_mut();
             rising.push(now.rising().unwrap_or_default());
             recorder.record(now)
@@ -162,6 +170,8 @@ pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course)
     Ok(RunRecord { columns, events: events.map_err(memory)?, steps, iterations, ending, failure })
 }
 
+type Watched<'a> = Box<dyn Fn(&Moment<'_, AnyStepper>) -> f64 + 'a>;
+
 impl Watch {
     fn kind(&self) -> Event {
         let kind = match self.direction {
@@ -173,7 +183,20 @@ impl Watch {
     }
 
     /// The function that rises through zero as the quantity rises through its value.
-    fn function(&self, factors: &[Factor]) -> Result<impl Fn(&Moment<'_, AnyStepper>) -> f64 + use<>, Failure> {
+    fn function<'a>(&'a self, factors: &[Factor], signals: &'a Signals) -> Result<Watched<'a>, Failure> {
+        let Some(function) = &self.function else { return self.of_quantity(factors) };
+        let rows: Vec<usize> = factors.iter().map(|factor| factor.kind.rows()).collect();
+        Ok(Box::new(move |now| {
+            let seen = (now.time(), now.attitude(), &rows, now.velocity(), now.momentum(), now.energy());
+            let called = Python::attach(|py| function.call1(py, seen)?.extract(py));
+            called.unwrap_or_else(|error| {
+                signals.raise(error);
+                f64::NAN
+            })
+        }))
+    }
+
+    fn of_quantity<'a>(&self, factors: &[Factor]) -> Result<Watched<'a>, Failure> {
         let (value, quantity) = (self.value, self.quantity.as_str());
         let components = || factors.iter().flat_map(|factor| &factor.components);
         let place = |kind: &str| components().position(|(name, _)| quantity.strip_prefix(kind) == Some(name));
@@ -198,7 +221,7 @@ impl Watch {
                 return Err(Failure::Of("SetupError", message));
             }
         };
-        Ok(move |now: &Moment<'_, AnyStepper>| match what {
+        Ok(Box::new(move |now| match what {
             // The tilt is compared by its cosine, which is smooth at the vertical.
             Quantity::Tilt => value.cos() - entry_of(now, 8),
             Quantity::Entry(place) => entry_of(now, place) - value,
@@ -206,7 +229,7 @@ impl Watch {
             Quantity::Speed => now.velocity().iter().map(|part| part * part).sum::<f64>() - value * value,
             Quantity::Velocity(place) => now.velocity()[place] - value,
             Quantity::Momentum(place) => now.momentum()[place] - value,
-        })
+        }))
     }
 }
 

@@ -1,13 +1,18 @@
 //! A declaration with numbers as a scene to run, for any group and any advected parameters.
 
+use std::sync::Arc;
+
 use liestep::accuracy::{Accuracy, Choice};
-use liestep::motion::AnyStepper;
-use liestep::with::Method;
-use liestep_late::{Declaration, LateError, Question, QuestionError, Role, Whole, WholeError, for_accuracy, stepper};
+use liestep::motion::{AnyStepper, Propagator as _};
+use liestep::with::{Method, Scheme};
+use liestep_late::{
+    Course as _, Declaration, LateError, Question, QuestionError, Role, Whole, WholeError, for_accuracy, stepper,
+};
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
 use crate::failure::Failure;
 use crate::run::{Course, RunRecord, record};
+use crate::signal::{Change, Changes, SceneCourse};
 use crate::start::{Start, started};
 
 /// The back end of programs: machine code if that feature is on, otherwise the interpreter, with the same bits.
@@ -22,6 +27,7 @@ pub(crate) struct Scene {
     declaration: &'static Declaration,
     numbers: Vec<f64>,
     has_force: bool,
+    changes: Arc<Changes>,
 }
 
 impl Scene {
@@ -30,12 +36,47 @@ impl Scene {
         self.with(&self.numbers, (method, h))
     }
 
-    fn with(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
-        if self.has_force && !method.is_plain() {
+    /// The stepper with other numbers of all terms.
+    pub(crate) fn with(&self, numbers: &[f64], (method, h): (Method, f64)) -> Result<AnyStepper, Failure> {
+        let is_own = matches!(method.scheme, Scheme::Step | Scheme::Composition(_));
+        let is_declared = is_own && !method.compensated && !method.varies();
+        if self.has_force && !is_declared {
             let message = "a scene with a force is made by its own step alone: leave the method out";
             return Err(Failure::Of("SetupError", message.to_owned()));
         }
-        Ok(stepper::<Backend>(self.declaration, numbers, h, method)?)
+        if self.changes.are_none() {
+            return Ok(stepper::<Backend>(self.declaration, numbers, h, method)?);
+        }
+        if !is_declared || self.declaration.energy.is_some() {
+            let message = "a signal is beside the declared step or a `composition` of it, with `substeps` or without";
+            return Err(Failure::Of("SetupError", message.to_owned()));
+        }
+        let whole = Whole::<Backend>::of(self.declaration, numbers, h, method)?;
+        let driven = whole.driven(SceneCourse(Arc::clone(&self.changes)));
+        Ok(AnyStepper::new(driven.map_err(|error| self.caused(Failure::setup(&error)))?))
+    }
+
+    /// The numbers of what is carried along, as the body sees them at the attitude of a state and at this time, s.
+    pub(crate) fn seen(&self, state: &[f64], time: f64) -> Result<Vec<f64>, Failure> {
+        let mut numbers = self.numbers.clone();
+        SceneCourse(Arc::clone(&self.changes)).at(time, &mut numbers);
+        let whole = Whole::<Backend>::of(self.declaration, &numbers, 1.0, Method::default())?;
+        Ok(whole.adopt(state)[whole.layout().advected()].to_vec())
+    }
+
+    /// Whether there are parameters that change with time.
+    pub(crate) fn has_changes(&self) -> bool {
+        !self.changes.are_none()
+    }
+
+    /// Forgets the cause of an earlier failure.
+    pub(crate) fn forget(&self) {
+        self.changes.cause();
+    }
+
+    /// A failure, by its cause where that is a signal without a value.
+    pub(crate) fn caused(&self, failure: Failure) -> Failure {
+        self.changes.cause().unwrap_or(failure)
     }
 
     /// Whether a step of `−h` undoes one of `h`, as methods of a higher order require.
@@ -51,7 +92,10 @@ impl Scene {
     /// The run by a method and a step.
     pub(crate) fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<RunRecord, Failure> {
         let stepper = self.stepper(method)?;
-        record(&stepper, started(&stepper, start)?, course)
+        self.forget();
+        let mut recorded = record(&stepper, started(&stepper, start)?, course)?;
+        recorded.failure = recorded.failure.map(|failure| self.caused(failure));
+        Ok(recorded)
     }
 
     /// The run by the method and the step that are the cheapest for a tolerance.
@@ -109,7 +153,7 @@ impl From<WholeError> for Failure {
 }
 
 /// The scene of the sum of these terms, with the numbers of all.
-pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<Scene, Failure> {
+pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64], changes: Vec<Change>) -> Result<Scene, Failure> {
     if terms.len() > 1 && terms.iter().any(|term| term.energy.is_some()) {
         return Err(Failure::setup(&LateError::Pace));
     }
@@ -119,5 +163,5 @@ pub(crate) fn scene(terms: &[&'static Declaration], numbers: &[f64]) -> Result<S
         return Err(Failure::Of("DeclarationError", message.to_owned()));
     }
     let has_force = terms.iter().any(|term| term.role == Role::Force);
-    Ok(Scene { declaration: sum, numbers: numbers.to_vec(), has_force })
+    Ok(Scene { declaration: sum, numbers: numbers.to_vec(), has_force, changes: Arc::new(Changes::of(changes)) })
 }

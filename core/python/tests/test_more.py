@@ -142,7 +142,7 @@ def test_the_rate_of_a_letter_is_one_in_latex():
     assert "dOmega/dt" in term.derivation and r"\mathrm{d}\Omega" in term.latex
 
 
-def test_matplotlib_scipy_and_pandas_where_they_are(top):
+def test_matplotlib_scipy_and_pandas_where_they_are(top, tmp_path):
     run = top.stepper(0.01).run(velocity=[0.5, 2, 12], until=5, attitude=ls.euler(0.1, 0.4))
     scipy = pytest.importorskip("scipy.spatial.transform", reason="SciPy isn't there")
     assert abs(run.attitude.as_matrix() - run.matrix).max() < 1e-14
@@ -152,7 +152,10 @@ def test_matplotlib_scipy_and_pandas_where_they_are(top):
     assert isinstance(run.to_pandas(), pandas.DataFrame)
     matplotlib = pytest.importorskip("matplotlib", reason="matplotlib isn't there")
     matplotlib.use("Agg")
-    assert len(run.plot()) == 2
+    figure = run.plot()
+    figure.savefig(tmp_path / "run.png")
+    assert len(figure.axes) == 2 and (tmp_path / "run.png").stat().st_size > 1000
+    assert run.plot(axes=matplotlib.pyplot.subplots(2)[1]) is not figure
 
 
 def _share(arguments):
@@ -183,3 +186,53 @@ def test_ray_takes_shares(top, tmp_path):
         ray.shutdown()
     both = many(top).run(tmp_path / "ray", until=1, progress=False)
     assert both.missing == 0 and (both["momentum_x"] == whole["momentum_x"]).all()
+
+
+def test_events_by_functions(top):
+    def low(now):
+        return now.attitude[2, 2] - 0.5
+
+    def stops(now):
+        assert isinstance(now, ls.Moment) and now.velocity.shape == now.momentum.shape == (3,)
+        return now.time - 0.777
+
+    stops.terminal, stops.direction = True, 1
+    start = {"velocity": [0.1, 0, 0.5], "attitude": ls.euler(0, 0.3)}
+    stepper = top.stepper(0.01)
+    run = stepper.run(**start, until=5, events={"low": low, "text": "tilt = 60 deg"})
+    assert len(run.events["low"]) > 2
+    assert run.events["low"].times == pytest.approx(run.events["text"].times, abs=1e-12)
+    # A cosine that falls is a tilt that rises.
+    assert (run.events["low"].rising == ~run.events["text"].rising).all()
+    low.direction = -1
+    fallen = stepper.run(**start, until=5, events={"low": low})
+    assert fallen.events["low"].times.tolist() == run.events["low"].times[~run.events["low"].rising].tolist()
+    ended = stepper.run(**start, until=5, events={"end": stops})
+    assert ended.ended_by == "end" and ended.time[-1] == pytest.approx(0.78)
+    assert ended.events["end"].times == pytest.approx([0.777], abs=1e-12)
+    energy = stepper.run(**start, until=1, events={"energy": lambda now: now.energy - 100})
+    assert len(energy.events["energy"]) == 0
+
+
+@pytest.mark.parametrize("answer,error", [
+    (float("nan"), ls.StepError), ("x", ls.SetupError), (None, ls.SetupError), ([1, 2], ls.SetupError), (1j, ls.SetupError),
+    (ZeroDivisionError("mine"), ZeroDivisionError),
+], ids=repr)
+def test_what_a_function_of_an_event_may_not_return_is_said(top, answer, error):
+    def event(now):
+        if now.time < 0.5:
+            return 1.0
+        if isinstance(answer, Exception):
+            raise answer
+        return answer
+
+    with pytest.raises(error) as raised:
+        top.stepper(0.01).run(velocity=[0.1, 0, 3], until=1, events={"event": event})
+    assert len(raised.value.run) == pytest.approx(51, abs=1)
+
+
+def test_times_are_in_their_order(top):
+    with pytest.raises(ls.SetupError, match="order"):
+        top.stepper(0.01).run(velocity=[0.1, 0, 3], times=[0, 0.7, 0.5])
+    assert top.stepper(-0.01).run(velocity=[0.1, 0, 3], times=[0, -0.5, -0.7]).time.tolist() == [0, -0.5, -0.7]
+    assert len(top.stepper(0.01).run(velocity=[0.1, 0, 3], times=[0, 0.5, 0.5])) == 3

@@ -112,6 +112,15 @@ impl AnyStepper {
         momentum
     }
 
+    /// Makes one step under a constant force in the body frame, as by [`Propagator::step_forced`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Propagator::step_forced`].
+    pub fn step_forced(&self, state: &mut AnyState, force: &[f64]) -> Result<StepReport, StepError> {
+        self.propagator.step_forced(&mut state.0.numbers, force)
+    }
+
     /// The motion of these numbers after this many steps.
     #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
     pub(super) fn motion_of(&self, mut numbers: Box<[f64]>, steps: u64) -> AnyMotion {

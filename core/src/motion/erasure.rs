@@ -133,6 +133,14 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Propagator for Erasure<S, P> {
         self.change(state, |own| Integrator::step(&self.stepper, own))
     }
 
+    fn step_forced(&self, state: &mut [f64], force: &[f64]) -> Result<StepReport, StepError> {
+        if force.len() != self.layout.components() {
+            return Err(StepError::NonFinite { what: "control force" });
+        }
+        // Some methods have the momentum in their memory.
+        self.change(state, |own| self.stepper.forced(own, &read::<Vector<S>>(force)))
+    }
+
     fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
         self.change(state, |own| Integrator::run(&self.stepper, own, steps))
     }

@@ -51,6 +51,8 @@ pub use integrator::{Answer, Integrator, Moment};
 pub use kept::Kept;
 pub use on_group::{GroupState, GroupStepper};
 pub use plan::{Cost, NextSteps, Plan, Steerable, Variable};
+#[doc(hidden)]
+pub use propagator::forced;
 pub use propagator::{Layout, Propagator};
 pub use report::{Remedy, StepReport};
 pub use right_hand_side::RightHandSide;

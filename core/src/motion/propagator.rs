@@ -41,6 +41,22 @@ pub trait Propagator {
     /// The errors of [`Stepper::step`](crate::Stepper::step).
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError>;
 
+    /// Makes one step under a constant force in the body frame, on SO(3) a torque about its axes, N m: half of its impulse
+    /// `h f` before the step, and half after it. On an error the state is unchanged. Where the lengths of steps depend on the
+    /// state, the force changes that of its own step: take equal ones.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`](Self::step); [`StepError::NonFinite`] for a force of another length, or one that isn't finite.
+    ///
+    /// # Source
+    ///
+    /// \[MW01\], section 3.2.
+    fn step_forced(&self, state: &mut [f64], force: &[f64]) -> Result<StepReport, StepError> {
+        let length = self.length(state).unwrap_or_else(|| self.step_size());
+        forced(self.layout(), state, (force, length), |next| self.step(next))
+    }
+
     /// Makes `steps` steps; returns the sum of their iterations.
     ///
     /// # Errors
@@ -177,4 +193,38 @@ impl Layout {
     pub fn state(&self) -> usize {
         self.memory().end + 1
     }
+}
+
+/// The result of a function on the state between both halves of a force's impulse over a step of this length. On an error
+/// the state is unchanged.
+///
+/// # Errors
+///
+/// The errors of the function, and those of [`Propagator::step_forced`].
+pub fn forced<R>(
+    layout: &Layout,
+    state: &mut [f64],
+    (force, length): (&[f64], f64),
+    run: impl FnOnce(&mut [f64]) -> Result<R, StepError>,
+) -> Result<R, StepError> {
+    if state.len() != layout.state() {
+        return Err(StepError::NonFinite { what: "state of this layout" });
+    }
+    if force.len() != layout.components() || !force.iter().all(|part| part.is_finite()) {
+        return Err(StepError::NonFinite { what: "control force" });
+    }
+    let half = length * 0.5;
+    let push = |state: &mut [f64]| {
+        let momentum = &mut state[layout.momentum()];
+        momentum.iter_mut().zip(force).for_each(|(momentum, force)| *momentum += force * half);
+    };
+    let mut next = state.to_vec();
+    push(&mut next);
+    let result = run(&mut next)?;
+    push(&mut next);
+    if !next[layout.momentum()].iter().all(|part| part.is_finite()) {
+        return Err(StepError::NonFinite { what: "momentum after the step" });
+    }
+    state.copy_from_slice(&next);
+    Ok(result)
 }

@@ -34,7 +34,7 @@ fn a_torque_has_its_impulse() {
     printed(&folder, &["check", "scene.toml"]);
 }
 
-const ORBIT: &str = "{ period = \"100 min\", normal = [0, 0, 1], eccentricity = 0.1, phase = \"40 deg\" }";
+const ORBIT: &str = "[orbit]\nperiod = \"100 min\"\nnormal = [0, 0, 1]\neccentricity = 0.1\nphase = \"40 deg\"";
 
 fn satellite(terms: &str, steps: u32, method: &str) -> String {
     format!(
@@ -45,7 +45,9 @@ fn satellite(terms: &str, steps: u32, method: &str) -> String {
     )
 }
 
-const GRADIENT: &str = "[gravity_gradient.direction]\norbit = ";
+const GRADIENT: &str = "[gravity_gradient]\ndirection = \"nadir\"\n";
+
+const DIPOLE: &str = "[dipole]\nmoment = [3, -2, 4]\n[dipole.field]\nequator = [\"2 µT\", \"5 µT\", \"25 µT\"]\n";
 
 /// A potential of the file's own follows an orbit as the library's does.
 #[test]
@@ -54,7 +56,7 @@ fn own_terms_follow_an_orbit() {
     let own = format!(
         "[lagrangian]\nl_d = \"{{ let after = F.transpose() * w; \
          -0.75 * h * n * n * (w.dot(&(J * w)) + after.dot(&(J * after))) }}\"\nadvected = {{ w = \"dir\" }}\n\
-         n = {:?}\nJ = {{ moments = [100, 250, 300] }}\ndir = {{ orbit = {ORBIT} }}",
+         n = {:?}\nJ = {{ moments = [100, 250, 300] }}\ndir = \"nadir\"\n{ORBIT}",
         std::f64::consts::TAU / 6000.0
     );
     let listed = format!("{GRADIENT}{ORBIT}");
@@ -65,12 +67,13 @@ fn own_terms_follow_an_orbit() {
     assert!(apart(&by_clock(&own), &by_clock(&listed)) < 1e-11);
 }
 
-/// Each stage of a composition has the direction of its own time.
+/// Each stage of a composition has the direction and the field of its own time.
 #[test]
 fn compositions_along_an_orbit_have_their_order() {
     let folder = folder("compositions_along_an_orbit_have_their_order");
     let end = |steps: u32, method: &str| {
-        let text = satellite(&format!("{GRADIENT}{ORBIT}"), steps, method);
+        let orbit = ORBIT.replace("eccentricity = 0.1", "eccentricity = 0.2");
+        let text = satellite(&format!("{GRADIENT}{DIPOLE}{orbit}"), steps, method);
         rows(&folder, &text).pop().unwrap()[1..8].to_vec()
     };
     let exact = end(800, "method = { composition = \"Kahan-Li 8\" }");

@@ -1,9 +1,9 @@
 //! Steps with inputs: forces and other values of parameters, and the derivatives of a step by state and force.
 
+use liestep::__private::forced;
 use liestep::StepError;
-use liestep::motion::{Propagator as _, StepReport};
+use liestep::motion::{Propagator, StepReport};
 
-use super::linear::are_finite;
 use super::stepper::Whole;
 use super::tangent::TangentCode;
 use crate::code::Backend;
@@ -29,7 +29,7 @@ impl<B: Backend<f64>> Whole<B> {
     ///
     /// # Errors
     ///
-    /// The errors of [`step`](liestep::motion::Propagator::step); [`StepError::NonFinite`] if the numbers can't be used.
+    /// The errors of [`step`](Propagator::step); [`StepError::NonFinite`] if the numbers can't be used.
     pub fn step_with(&self, state: &mut [f64], numbers: &[f64]) -> Result<StepReport, StepError> {
         let mut next = self.checked(state)?.to_vec();
         let driven =
@@ -41,32 +41,18 @@ impl<B: Backend<f64>> Whole<B> {
         Ok(report)
     }
 
-    /// Makes one step with a constant force in the body frame, on SO(3) a torque about its axes, N m: half of its impulse `h f`
-    /// before the step, and half after it. On an error the state is unchanged.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`step`](liestep::motion::Propagator::step); [`StepError::NonFinite`] for a force that isn't finite.
-    ///
-    /// # Source
-    ///
-    /// \[MW01\], section 3.2.
-    pub fn step_forced(&self, state: &mut [f64], force: &[f64]) -> Result<StepReport, StepError> {
-        self.forced(state, force, |next| self.step(next))
-    }
-
-    /// Makes one step with a constant force, as [`step_forced`](Self::step_forced), and returns the derivatives of the state
+    /// Makes one step with a constant force, as [`step_forced`](Propagator::step_forced), and returns the derivatives of the state
     /// after it by the state before it and by the force, as [`Transition`]. On an error the state is unchanged. The
     /// first call for a declaration writes the code of its tangent map.
     ///
     /// # Errors
     ///
-    /// The errors of [`step_forced`](Self::step_forced), without remedies by substeps; [`StepError::NonFinite`] if a
+    /// The errors of [`step_forced`](Propagator::step_forced), without remedies by substeps; [`StepError::NonFinite`] if a
     /// derivative overflows, or has too long a code.
     pub fn transition(&self, state: &mut [f64], force: &[f64]) -> Result<Transition, StepError> {
         let unknown = |_| StepError::NonFinite { what: "derivative" };
         let (n, tangent) = (self.codes.sizes.n, TangentCode::<B>::of(self.declaration()).map_err(unknown)?);
-        let by_state = self.forced(state, force, |next| {
+        let by_state = forced(self.layout(), state, (force, self.h), |next| {
             self.in_room(|room| self.stages.transition(self.numbered(), &tangent, next, room))
         })?;
         // `B = h/2 (A_μ + (0, I))`
@@ -75,32 +61,5 @@ impl<B: Backend<f64>> Whole<B> {
         let by_momentum = by_state.iter().skip(2 * n * n).enumerate();
         let by_force = by_momentum.map(|(at, entry)| (entry + impulse(at)) * half).collect();
         Ok(Transition { by_state, by_force })
-    }
-
-    /// The result of a function on the state between both halves of a force's impulse.
-    fn forced<R>(
-        &self,
-        state: &mut [f64],
-        force: &[f64],
-        run: impl FnOnce(&mut [f64]) -> Result<R, StepError>,
-    ) -> Result<R, StepError> {
-        let sizes = &self.codes.sizes;
-        let mut next = self.checked(state)?.to_vec();
-        if force.len() != sizes.n || !are_finite(force) {
-            return Err(StepError::NonFinite { what: "control force" });
-        }
-        let half = self.h * 0.5;
-        let push = |state: &mut [f64]| {
-            let momentum = &mut state[sizes.momentum()..sizes.advected()];
-            momentum.iter_mut().zip(force).for_each(|(momentum, force)| *momentum += force * half);
-        };
-        push(&mut next);
-        let result = run(&mut next)?;
-        push(&mut next);
-        if !are_finite(&next[sizes.momentum()..sizes.advected()]) {
-            return Err(StepError::NonFinite { what: "momentum after the step" });
-        }
-        state.copy_from_slice(&next);
-        Ok(result)
     }
 }

@@ -13,19 +13,22 @@ from . import errors
 from ._control import Control, Plan
 from ._declared import contravariant, covariant, mixed, point
 from ._ensemble import Ensemble, Many, Spread, normal, rotation, uniform
+from ._event import Moment
 from ._library import (
     body, dipole, drag, gravity, gravity_gradient, magnetic_damping, nonstandard, rotor, spring, thrust, torque,
 )
 from ._run import Columns, Happenings, Run, Scene, SceneRun, scene
+from ._signal import Signal, signal
+from ._state import State
 from ._stepper import Stepper, euler, schemes, translation
 from ._term import Term, force, lagrangian
 from .errors import ColumnError, DeclarationError, Error, SceneError, SetupError, StepError, StoreError
 
 __version__ = "0.1.0"
 __all__ = [
-    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Plan", "Run", "Scene",
-    "SceneError", "SceneRun",
-    "SetupError", "Spread", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
+    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Moment", "Plan", "Run",
+    "Scene", "SceneError", "SceneRun",
+    "SetupError", "Signal", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
     "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "mixed",
-    "nonstandard", "normal", "point", "rotation", "rotor", "scene", "schemes", "spring", "thrust", "torque", "translation", "uniform",
+    "nonstandard", "normal", "point", "rotation", "rotor", "scene", "schemes", "signal", "spring", "thrust", "torque", "translation", "uniform",
 ]

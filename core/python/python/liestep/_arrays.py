@@ -14,18 +14,26 @@ if TYPE_CHECKING:
 
 
 def floats(name: str, value: Any, error: type[Error]) -> Array:
-    """An array of real numbers, none of them hidden: neither complex nor masked ones are taken for real ones."""
+    """An array of real numbers, none of them hidden: no text, complex number, masked one or nothing is taken for one."""
     import numpy as np
 
     try:
         array = np.asanyarray(value)
+        is_plain = array.dtype.kind in "biuf"
         if np.iscomplexobj(array) or isinstance(array, np.ma.MaskedArray):
             raise error(f"`{name}` is an array of real numbers, neither complex nor masked")
-        return np.asarray(array, dtype=float)
+        if is_plain or array.dtype.kind == "O" and all(map(_is_real, array.flat)):
+            return np.asarray(array, dtype=float)
+        raise TypeError
     except (TypeError, ValueError, OverflowError) as cause:
         if isinstance(cause, Error):
             raise
         raise error(f"`{name}` is a number, a vector or a matrix of numbers, not {value!r:.80}") from cause
+
+
+def _is_real(one: Any) -> bool:
+    """Whether an object, such as a fraction, is a real number."""
+    return hasattr(one, "__float__") and not isinstance(one, complex)
 
 
 def number(name: str, value: Any) -> float:
@@ -34,6 +42,20 @@ def number(name: str, value: Any) -> float:
     if array.shape != ():
         raise SetupError(f"`{name}` is a number, not an array of the shape {array.shape}")
     return float(array)
+
+
+def vector(name: str, value: Any) -> list[float]:
+    """A list of real numbers."""
+    import numpy as np
+
+    if type(value) is np.ndarray and value.dtype == float and value.ndim == 1:
+        own: list[float] = value.tolist()
+        return own
+    array = floats(name, value, SetupError)
+    if array.ndim != 1:
+        raise SetupError(f"`{name}` is a list of numbers, not an array of the shape {array.shape}")
+    numbers: list[float] = array.tolist()
+    return numbers
 
 
 def whole(name: str, value: Any, least: int, most: int) -> int:

@@ -185,8 +185,8 @@ class Control:
     ) -> None:
         import numpy as np
 
-        if term.role != "lagrangian" or term.has_pace:
-            raise SetupError(f"a plan is one of a Lagrangian without a pace, and not of {term!r:.80}")
+        if term.role != "lagrangian" or term.has_pace or term._signals():
+            raise SetupError(f"a plan is one of a Lagrangian without a pace or a signal, and not of {term!r:.80}")
         whole("steps", steps, 1, 10**6)
         along = _components(axes, term._terms()[0][0].dimension, term.group == "SO3")
 

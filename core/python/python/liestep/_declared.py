@@ -4,18 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from . import _native
 from ._arrays import floats
+from ._signal import NEAR_ONE, Signal, diagonal
 from .errors import DeclarationError
 
 if TYPE_CHECKING:
     from ._arrays import Array
 
-#: A parameter: its type in the text, and its numbers, those of a matrix row by row.
-Value = tuple[str, tuple[float, ...]]
 Group = str | Mapping[str, str]
+
+
+class Value(NamedTuple):
+    """A parameter: its type in the text, and its numbers, those of a matrix row by row."""
+
+    kind: str
+    numbers: tuple[float, ...]
+    #: The signal that gives the numbers over time; those here are of the start.
+    signal: Signal | None = None
+
+
+class Change(NamedTuple):
+    """A parameter that changes with time: its first number among those of all summands, how many it has, and its signal."""
+
+    name: str
+    first: int
+    width: int
+    is_direction: bool
+    signal: _native.Signal | None
+    function: Any
 
 
 @dataclass(frozen=True)
@@ -25,9 +44,12 @@ class Carried:
     #: Its type in the text.
     kind: str
     numbers: tuple[float, ...]
+    signal: Signal | None = None
 
 
 def _carried(kind: str, value: Any, dimensions: tuple[int, ...], is_said: str) -> Carried:
+    if isinstance(value, Signal):
+        return replace(_carried(kind, value.first, dimensions, is_said), signal=value)
     array = floats(kind, value, DeclarationError)
     if array.ndim not in dimensions or array.size == 0 or len(set(array.shape)) > 1:
         raise DeclarationError(f"{is_said}, not the shape {array.shape}")
@@ -103,35 +125,37 @@ def _value(name: str, value: Any) -> Value:
     import numpy as np
 
     if isinstance(value, Carried):
-        return value.kind, value.numbers
+        return Value(value.kind, value.numbers, value.signal)
+    if isinstance(value, Signal):
+        if name.startswith("J") and value.shape == (3,):
+            value = value.mapped(diagonal)
+        return _value(name, value.first)._replace(signal=value)
     array = floats(name, value, DeclarationError)
     numbers = tuple(array.ravel().tolist())
     # As the letters of the field have it.
     if name.startswith("J") and array.shape in ((3,), (3, 3)):
         if array.shape == (3,):
             numbers = tuple(np.diag(array).ravel().tolist())
-        return ("NonstandardInertia" if name.endswith("_d") else "Inertia"), numbers
+        return Value("NonstandardInertia" if name.endswith("_d") else "Inertia", numbers)
     match array.shape:
         case ():
-            return "f64", numbers
+            return Value("f64", numbers)
         case (rows,) if rows > 0:
-            return f"SVector<f64, {rows}>", numbers
+            return Value(f"SVector<f64, {rows}>", numbers)
         case (rows, columns) if rows == columns > 0:
-            return f"SMatrix<f64, {rows}, {rows}>", numbers
+            return Value(f"SMatrix<f64, {rows}, {rows}>", numbers)
     raise DeclarationError(f"`{name}` has the shape {array.shape}: give a number, a vector or a square matrix")
 
 
-#: More is no rounding of a length of one.
-NEAR_ONE = 1e-3
-
-
 def _direction(name: str, value: Value) -> Value:
-    kind, numbers = value
+    numbers = value.numbers
     length = sum(number * number for number in numbers) ** 0.5
     if not abs(length - 1) <= NEAR_ONE:
         unit = ", ".join(f"{number / length:.6g}" for number in numbers) if 0 < length < float("inf") else "0, 0, 1"
         raise DeclarationError(f"`{name}` is a direction, and isn't of length one but of {length:.6g}: write [{unit}]")
-    return kind, tuple(number / length for number in numbers)
+    if value.signal is not None and not value.signal.has_unit_values:
+        raise DeclarationError(f"`{name}` is a direction, and its signal has values of other lengths than one")
+    return value._replace(numbers=tuple(number / length for number in numbers))
 
 
 @dataclass(frozen=True)
@@ -155,8 +179,8 @@ class Summand:
             lengths[field] = length
             if field not in numbers:
                 raise DeclarationError(f"`{name}` has parameters {', '.join(dict(derived.parameters))}: give {field}")
-            if len(numbers[field][1]) != length:
-                raise DeclarationError(f"`{field}` has {length} numbers, and {len(numbers[field][1])} were given")
+            if len(numbers[field].numbers) != length:
+                raise DeclarationError(f"`{field}` has {length} numbers, and {len(numbers[field].numbers)} were given")
         given = {field: numbers[field] for field in lengths}
         given |= {field: _direction(field, given[field]) for field in directions}
         return cls(text, tuple(given.items()), name, tuple(directions)), derived
@@ -255,12 +279,27 @@ class Sum:
 
     def _terms(self) -> list[tuple[_native.Derivation, list[float]]]:
         return [
-            (summand.derived(), [number for _, (_, value) in summand.numbers for number in value])
+            (summand.derived(), [number for _, value in summand.numbers for number in value.numbers])
             for summand in self.summands
         ]
 
+    def _changes(self) -> list[Change]:
+        """The parameters that change with time."""
+        changes = []
+        for at, summand in enumerate(self.summands):
+            for which, (name, (_, numbers, signal)) in enumerate(summand.numbers):
+                if signal is not None:
+                    width, is_direction = len(numbers), name in summand.directions
+                    changes.append(Change(name, self._first_number((at, which)), width, is_direction, *signal.source))
+        return changes
+
+    def _signals(self) -> dict[str, Signal]:
+        """The signals by the names of parameters."""
+        values = [(name, value.signal) for summand in self.summands for name, value in summand.numbers]
+        return {name: signal for name, signal in values if signal is not None}
+
     def _scene(self) -> _native.Scene:
-        return _native.Scene(self._terms())
+        return _native.Scene(self._terms(), self._changes())
 
     def _value(self, place: Place) -> Value:
         return self.summands[place[0]].numbers[place[1]][1]
@@ -281,7 +320,7 @@ class Sum:
         return named
 
     def _are_equal(self, places: list[Place]) -> bool:
-        return len({self._value(place)[1] for place in places}) == 1
+        return len({self._value(place)[1:] for place in places}) == 1
 
     def _found(self, name: str) -> list[Place]:
         """The places of the parameters that a name stands for."""
@@ -297,20 +336,38 @@ class Sum:
         """The place of a parameter's first number among those of all summands."""
         before = [numbers for summand in self.summands[: place[0]] for numbers in summand.numbers]
         before += self.summands[place[0]].numbers[: place[1]]
-        return sum(len(value) for _, (_, value) in before)
+        return sum(len(value.numbers) for _, value in before)
 
-    @property
-    def parameters(self) -> dict[str, Any]:
-        """The parameters by their names."""
+    def _shown(self) -> dict[str, list[Place]]:
+        """The names under which `parameters` has them, in order, and their places."""
         named = self._places()
         several = {name for name, places in named.items() if not self._are_equal(places)}
         shared = {place for name, places in named.items() if len(places) > 1 and name not in several for place in places}
         shown = {
-            name: places[0] for name, places in named.items()
+            name: places for name, places in named.items()
             if name not in several and (len(places) > 1 or places[0] not in shared)
         }
-        ordered = sorted(shown, key=lambda name: shown[name])
-        return {name: _shaped(*self._value(shown[name])) for name in ordered}
+        return {name: shown[name] for name in sorted(shown, key=lambda name: shown[name][0])}
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The parameters by their names."""
+        values = {name: self._value(places[0]) for name, places in self._shown().items()}
+        return {name: value.signal or _shaped(value.kind, value.numbers) for name, value in values.items()}
+
+    def _seen(self, numbers: list[float]) -> dict[str, Any]:
+        """What is carried along by the names of its parameters, from the numbers of all summands."""
+        found: dict[Place, tuple[float, ...]] = {}
+        first = 0
+        for at, summand in enumerate(self.summands):
+            for which, length in summand.derived().carried:
+                if which is not None:
+                    found[at, which] = tuple(numbers[first : first + length])
+                first += length
+        kind = {place: self._value(place).kind for place in found}
+        return {
+            name: _shaped(kind[places[0]], found[places[0]]) for name, places in self._shown().items() if places[0] in found
+        }
 
     def with_(self: AnySum, **parameters: Any) -> AnySum:
         """The same with other values of parameters.
@@ -331,11 +388,11 @@ class Sum:
         summands = list(self.summands)
         for name, value in parameters.items():
             for at, which in self._found(name):
-                own, (kind, old) = self.summands[at].numbers[which]
-                found = _value(own, value)[1]
-                if len(found) != len(old):
-                    raise DeclarationError(f"`{name}` has {len(old)} numbers, not {len(found)}")
-                summands[at] = summands[at].with_value(own, (kind, found))
+                own, old = self.summands[at].numbers[which]
+                found = _value(own, value)
+                if len(found.numbers) != len(old.numbers):
+                    raise DeclarationError(f"`{name}` has {len(old.numbers)} numbers, not {len(found.numbers)}")
+                summands[at] = summands[at].with_value(own, found._replace(kind=old.kind))
         return replace(self, summands=tuple(summands))
 
     def __repr__(self) -> str:
@@ -357,5 +414,5 @@ def _shaped(kind: str, numbers: tuple[float, ...]) -> Any:
     if kind == "f64":
         return numbers[0]
     rows = round(len(numbers) ** 0.5)
-    is_matrix = "Matrix" in kind or "Inertia" in kind
+    is_matrix = any(word in kind for word in ("Matrix", "Inertia", "Tensor"))
     return np.array(numbers).reshape((rows, rows) if is_matrix else (len(numbers),))

@@ -160,6 +160,9 @@ class Ensemble:
         if method is not None and not isinstance(method, dict):
             raise SetupError(f'a method is one of `liestep.Stepper`, as {{"composition": "Suzuki 4"}}, not {method!r:.80}')
         self.stepper = Stepper(term, step, **(method or {}))
+        for name, signal in term._signals().items():
+            if signal.source[0] is None:
+                raise SetupError(f"`{name}` is a function, and members have signals by values: write `ls.signal(times, function, …)`")
         self.members, self.seed = members, seed
         self._draws: list[_Draw] = []
         self._turns = isinstance(attitude, Spread) and attitude.kind == "rotation"
@@ -179,9 +182,11 @@ class Ensemble:
         term = self.stepper.term
         places = term._found(name)
         for place in places:
-            own, (_, numbers) = term.summands[place[0]].numbers[place[1]]
+            own, (_, numbers, signal) = term.summands[place[0]].numbers[place[1]]
             if len(numbers) != len(spread.first):
                 raise SetupError(f"`{name}` has {len(numbers)} numbers, and {len(spread.first)} are drawn")
+            if signal is not None:
+                raise SetupError(f"`{name}` is a signal, which isn't drawn: draw the other parameters")
             if own in term.summands[place[0]].directions:
                 raise SetupError(f"`{name}` is a direction, of length one, and isn't drawn: draw the attitude instead")
         return [term._first_number(place) for place in places]
@@ -230,7 +235,8 @@ class Ensemble:
         shown = _bar if progress is True else None if progress is False else progress
         term, (kind, scheme, *rest) = self.stepper.term, self.stepper.method
         # One plan is told from another by all that it is made of.
-        plan_name = repr((term.summands, kind, scheme, rest, self.stepper.step, self._draws, self._start, self._turns))
+        over_time = [(name, signal.key()) for name, signal in term._signals().items()]
+        plan_name = repr((term.summands, over_time, kind, scheme, rest, self.stepper.step, self._draws, self._start, self._turns))
         plan = _Members(plan_name, self.members, self.seed, end, every, chunk, str(folder), threads,
                         _native.share(share), self._turns, shown)
         made = self.stepper._native.members(self.stepper.step, self.stepper.method, self._start, self._draws, plan)

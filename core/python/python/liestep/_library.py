@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from . import _native
 from ._arrays import floats
 from ._declared import Summand, _value
+from ._signal import Signal, diagonal
 from ._term import Term
 from .errors import DeclarationError
+
+if TYPE_CHECKING:
+    from ._arrays import Array
 
 
 def _term(name: str, *directions: str, **parameters: Any) -> Term:
@@ -28,14 +32,18 @@ def nonstandard(J: Any) -> Any:
     >>> ls.nonstandard([3, 3, 4]).diagonal().tolist()
     [2.0, 2.0, 1.0]
     """
+    inertia = J if isinstance(J, Signal) else floats("J", J, DeclarationError)
+    if inertia.shape not in ((3,), (3, 3)):
+        raise DeclarationError(f"an inertia has three moments or a matrix of three rows, not the shape {inertia.shape}")
+    return inertia.mapped(_nonstandard) if isinstance(inertia, Signal) else _nonstandard(inertia[None])[0]
+
+
+def _nonstandard(values: Array) -> Array:
     import numpy as np
 
-    matrix = floats("J", J, DeclarationError)
-    if matrix.shape == (3,):
-        matrix = np.diag(matrix)
-    if matrix.shape != (3, 3):
-        raise DeclarationError(f"an inertia has three moments or a matrix of three rows, not the shape {matrix.shape}")
-    return np.trace(matrix) / 2 * np.eye(3) - matrix
+    matrices = diagonal(values) if values.ndim == 2 else values
+    traces: Array = np.trace(matrices, axis1=1, axis2=2)[:, None, None]
+    return traces / 2 * np.eye(3) - matrices
 
 
 def body(J: Any, *, kinetic: str = "rigid") -> Term:

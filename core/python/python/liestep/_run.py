@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import pickle
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _arrays, _native
-from .errors import ColumnError
+from ._state import State
+from ._tables import written
+from .errors import ColumnError, SceneError, SetupError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -181,6 +184,14 @@ class Run(Motion):
             self._error, self._estimate = self._estimate(self), None
         return self._error
 
+    def __getstate__(self) -> dict[str, Any]:
+        try:
+            pickle.dumps(self._estimate)
+        except (pickle.PicklingError, AttributeError, TypeError):
+            # A signal by a function that doesn't pickle leaves no other runs.
+            return {**self.__dict__, "_error": self.error, "_estimate": None}
+        return self.__dict__
+
     @property
     def _said(self) -> str:
         """How it was made, and how far it is off where that takes no time."""
@@ -244,7 +255,10 @@ class Run(Motion):
         return np.asarray(np.einsum("nij,nj->ni", self.matrix, self.momentum))
 
     def plot(self, axes: Any = None) -> Any:
-        """Velocity and energy over time, by matplotlib; returns the axes."""
+        """Velocity and energy over time, by matplotlib, on two axes if they are given; returns the figure.
+
+        ``run.plot().savefig("run.png")`` saves it.
+        """
         import matplotlib.pyplot as plt
 
         if axes is None:
@@ -254,7 +268,7 @@ class Run(Motion):
         axes[0].legend(loc="upper right")
         axes[1].semilogy(self.time, abs(self.energy - self.energy[0]).clip(min=2.0**-52 * abs(self.energy[0])))
         axes[1].set(xlabel="time, s", ylabel="energy from its start")
-        return axes
+        return axes[0].figure
 
     def html(self, path: str | Path | None = None) -> str:
         """The page that plays a motion on SO(3) in a browser; written to a file, if one is given."""
@@ -347,9 +361,53 @@ class Scene:
         """What it is called."""
         return self._file.title
 
+    @property
+    def text(self) -> str | None:
+        """The text that it was made of; none of a file."""
+        return self._text
+
     def run(self) -> SceneRun:
         """Makes the run that the file says."""
         return SceneRun(self._file.run())
+
+    def start(self) -> State:
+        """The state at the file's start, for a loop of your own with its step.
+
+        Examples
+        --------
+        A pendulum of two rods whose elbow is driven:
+
+        >>> import liestep as ls
+        >>> text = '''
+        ... title = "Acrobot"
+        ... gravity = { g = 9.81, up = [0, 0, 1] }
+        ... body = [
+        ...     { name = "upper", m = 1, moments = [0.1, 0.1, 0.001] },
+        ...     { name = "fore", m = 1, moments = [0.1, 0.1, 0.001] },
+        ... ]
+        ... joint = [
+        ...     { kind = "pin", bodies = ["space", "upper"], at = [[0, 0, 0], [0, 0, 0.5]], axes = [[0, 1, 0], [0, 1, 0]] },
+        ...     { name = "elbow", kind = "pin", bodies = ["upper", "fore"], at = [[0, 0, -0.5], [0, 0, 0.5]],
+        ...       axes = [[0, 1, 0], [0, 1, 0]] },
+        ... ]
+        ... run = { step = 0.001, duration = 1 }
+        ... '''
+        >>> state = ls.scene("acrobot.toml", text).start()
+        >>> state.step(100, torque={"elbow": 1.0})
+        >>> angle, rate = state.joints["elbow"]
+        >>> angle > 0 and rate > 0
+        True
+        """
+        return State(self, self._file.start())
+
+    def _resumed(self, numbers: list[float]) -> _native.State:
+        return self._file.resume(numbers)
+
+    def _seen(self, numbers: list[float]) -> dict[str, Any]:
+        raise SetupError("what a file's scene carries along has no names here: read the attitude")
+
+    def _given(self, parameters: Mapping[str, Any]) -> list[float]:
+        raise SetupError("parameters of a file's scene are those of the file: take a term, as `ls.body(J) + …`")
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Scene, (self._path, self._text)
@@ -358,10 +416,18 @@ class Scene:
         return f"<Scene {self.title}: {self._file.about}>"
 
 
-def scene(path: str | Path, text: str | None = None) -> Scene:
-    """A scene from a file of TOML, or from its text: one body, or several with joints and springs.
+def scene(path: str | Path | Mapping[str, Any], text: str | None = None) -> Scene:
+    """A scene from a file of TOML, from its text, or from its tables: one body, or several with joints and springs.
 
     Every key is on the page of `liestep_scene::SceneFile`.
+
+    Parameters
+    ----------
+    path : str, Path or mapping
+        The file; or the tables that it would have, with numbers, texts with a unit, lists and arrays as values. Mistakes of tables
+        have the lines of `Scene.text`.
+    text : str, optional
+        The text of the file, which isn't read then.
 
     Examples
     --------
@@ -379,5 +445,15 @@ def scene(path: str | Path, text: str | None = None) -> Scene:
     ... '''
     >>> len(ls.scene("wing-nut.toml", text).run())
     1001
+    >>> tables = {
+    ...     "title": "A wing nut", "body": {"moments": [1.0, 2.0, 2.5]}, "run": {"step": "20 ms", "duration": 20},
+    ...     "start": {"euler": [0, 0, 0], "velocity": [0.001, "2 rad/s", 0.001]},
+    ... }
+    >>> len(ls.scene(tables).run())
+    1001
     """
+    if isinstance(path, Mapping):
+        if text is not None:
+            raise SceneError("a scene is made of tables or of a text, and these are both")
+        return Scene("scene.toml", written(path))
     return Scene(path, text)

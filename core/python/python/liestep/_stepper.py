@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import ceil, hypot, inf, isfinite
 from typing import Any
@@ -11,7 +10,10 @@ from typing import Any
 from . import _native
 from ._arrays import floats, number, whole
 from ._declared import Sum
+from ._event import Moment, Watch, watch
 from ._run import Run
+from ._signal import Signal, reach
+from ._state import State
 from .errors import Error, SetupError, StepError
 
 
@@ -88,20 +90,6 @@ def translation(shift: Any) -> Any:
     return matrix
 
 
-_EVENT = re.compile(
-    r"\s*(?P<of>\w+)\s*(?P<sign>[<>]|=)\s*(?P<value>[-+]?[\d.]+(?:e[-+]?\d+)?)\s*(?P<unit>deg|rad|rpm)?\s*(?P<stop>,\s*stop)?\s*"
-)
-_UNITS = {None: 1.0, "rad": 1.0, "deg": 0.017453292519943295, "rpm": 0.10471975511965977}
-
-
-@dataclass
-class _Watch:
-    quantity: str
-    value: float
-    direction: int
-    stops: bool
-
-
 @dataclass
 class _Start:
     attitude: list[float]
@@ -114,15 +102,7 @@ class _Course:
     until: float
     every: int
     times: list[float] | None
-    events: list[_Watch]
-
-
-def _watch(text: Any) -> _Watch:
-    found = _EVENT.fullmatch(text) if isinstance(text, str) else None
-    if found is None:
-        raise SetupError(f'{text!r} is no event: write "tilt > 60 deg", "energy < 3", "velocity_x = 0, stop"')
-    direction = {">": 1, "<": -1, "=": 0}[found["sign"]]
-    return _Watch(found["of"], float(found["value"]) * _UNITS[found["unit"]], direction, bool(found["stop"]))
+    events: list[Watch]
 
 
 def _end(until: Any, times: list[float] | None, step: float | None) -> float:
@@ -140,16 +120,19 @@ def _end(until: Any, times: list[float] | None, step: float | None) -> float:
     return end
 
 
-def _course(until: Any, every: Any, times: Any, events: Mapping[str, str] | None, step: float | None) -> _Course:
+def _course(until: Any, every: Any, times: Any, events: Mapping[str, Any] | None, step: float | None) -> _Course:
     whole("every", every, 1, 2**63 - 1)
     if events is not None and not isinstance(events, Mapping):
         raise SetupError(f'`events` are texts by names, as {{"low": "tilt > 60 deg"}}, not {events!r:.80}')
-    watched = [_watch(text) for text in (events or {}).values()]
+    watched = [watch(text) for text in (events or {}).values()]
     if times is None:
         return _Course(_end(until, None, step), every, None, watched)
     asked = floats("times", times, SetupError)
     if asked.ndim != 1:
         raise SetupError(f"`times` is a list of times, not an array of shape {asked.shape}")
+    lengths = asked[1:] - asked[:-1]
+    if (lengths > 0).any() and (lengths < 0).any():
+        raise SetupError("`times` are in their order, and some come after a later one: sort them")
     return _Course(_end(until, asked.tolist(), step), 0, asked.tolist(), watched)
 
 
@@ -184,6 +167,8 @@ class Stepper:
         Whether what rounding takes from sums is added to the next.
     substeps : int
         Into how many parts a step is divided at most that has no solution.
+
+    Beside a `liestep.signal` there are the declared step and a composition of it.
 
     Examples
     --------
@@ -235,7 +220,7 @@ class Stepper:
         until: float | None = None,
         every: int | None = None,
         times: Any = None,
-        events: Mapping[str, str] | None = None,
+        events: Mapping[str, str | Callable[[Moment], Any]] | None = None,
     ) -> Run:
         """Makes the steps to a time, and records them.
 
@@ -253,7 +238,8 @@ class Stepper:
         times : array_like, optional
             The times of the rows instead, s, between the steps too; without `until` the last of them is the end.
         events : mapping, optional
-            Names, and what is looked for: ``"tilt > 60 deg"``, ``"velocity_x = 0"``; with ``", stop"`` it ends the run.
+            Names, and what is looked for: ``"tilt > 60 deg"``, ``"velocity_x = 0"``; with ``", stop"`` it ends the run. Or a
+            function of a `liestep.Moment` that passes zero there; its attributes ``direction`` and ``terminal`` are SciPy's.
 
         Returns
         -------
@@ -277,11 +263,39 @@ class Stepper:
         course = self._course(until, every, times, events)
         return self._made(_start(attitude, velocity), course, list(events or {}))
 
+    def start(self, *, velocity: Any, attitude: Any = None) -> State:
+        """The state at a start, for a loop of your own: ``state.step(torque=…)``.
+
+        Parameters
+        ----------
+        velocity, attitude
+            As of `run`.
+
+        Returns
+        -------
+        State
+        """
+        return State(self, self._native.start(self.step, self.method, _start(attitude, velocity)))
+
+    def _resumed(self, numbers: list[float]) -> _native.State:
+        return self._native.resume(self.step, self.method, numbers)
+
+    def _seen(self, numbers: list[float]) -> dict[str, Any]:
+        return self.term._seen(numbers)
+
+    def _given(self, parameters: Mapping[str, Any]) -> list[float]:
+        if not isinstance(parameters, Mapping):
+            raise SetupError(f'`given` are values by the names of parameters, as {{"m": 2.0}}, not {parameters!r:.80}')
+        if any(isinstance(value, Signal) for value in parameters.values()):
+            raise SetupError("`given` are values: a signal is a parameter of the term, as in `term.with_(m=ls.signal(…))`")
+        return [number for _, numbers in self.term.with_(**parameters)._terms() for number in numbers]
+
     def _course(self, until: Any, every: Any, times: Any, events: Any) -> _Course:
         are_equal = self.method[0] != "density" and not self.term.has_pace
         return _course(until, 1 if every is None else every, times, events, self.step if are_equal else None)
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
+        reach(self.term._signals(), course.until)
         made = self._native.run(self.step, self.method, start, course)
         return _finished(self.term, self.step, made, names, self._about(), _Estimate(self, start, course.until))
 
@@ -400,7 +414,7 @@ class _Search(Stepper):
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
         scene = self.term._scene()
-        if not scene.is_self_adjoint:
+        if not scene.is_self_adjoint or self.term._signals():
             return self._by_own_steps(start, course, names)
         made = scene.ask(self.tolerance, start, course)
         kind, name = made["method"]

@@ -107,7 +107,7 @@ def _declared(
     carried = f"advected({sources}), " if sources else ""
     if head.startswith("pace = "):
         carried = "given(E_0 = E_0_of_the_start), " + carried
-    fields = ", ".join(f"{name}: {kind}" for name, (kind, _) in numbers.items())
+    fields = ", ".join(f"{name}: {value.kind}" for name, value in numbers.items())
     whole = f"#[{role}({on}, {carried}{head} =\n{own_text}\n)]\nstruct Declared {{ {fields} }}"
     try:
         return Term.of(*Summand.of(whole, numbers, role.capitalize() if role == "lagrangian" else role))
@@ -165,7 +165,7 @@ def lagrangian(
         the step is one of ``τ``, and runs are in seconds.
     **parameters
         Numbers, vectors, square matrices, and what is carried otherwise than a covector (`liestep.point`, `contravariant`,
-        `covariant`, `mixed`), by their names. Names that begin with ``J`` are inertias, kg m², given by a
+        `covariant`, `mixed`), or how they change with time (`liestep.signal`), by their names. Names that begin with ``J`` are inertias, kg m², given by a
         matrix or by three moments; those that end in ``_d`` nonstandard ones.
 
     Returns
@@ -212,7 +212,7 @@ def lagrangian(
         head = f"{named if is_used else ''}discretise = {discretise}, l"
     if pace is not None:
         head = f"pace = {{ {pace} }}, {head}"
-        numbers["E_0_of_the_start"] = ("f64", (0.0,))
+        numbers["E_0_of_the_start"] = Value("f64", (0.0,))
     return _declared("lagrangian", group, head, l_d if l is None else l, advected, numbers, generators)
 
 

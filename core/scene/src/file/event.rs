@@ -98,11 +98,11 @@ impl TryFrom<EventTable> for Event {
 }
 
 impl Event {
-    /// Finds the place of a column among these, of which some are quaternions, or refuses the quantity of one body elsewhere:
-    /// `one_body` says why there is none.
+    /// Finds the place of a column among these, of which the numbers in some places jump, or refuses the quantity of one body
+    /// elsewhere: `one_body` says why there is none.
     pub(crate) fn placed(
         &mut self,
-        (columns, quaternions): (&[Column], &[usize]),
+        (columns, jumps): (&[Column], &dyn Fn(usize) -> bool),
         one_body: Result<(), &str>,
         at: &dyn Fn() -> Range<usize>,
     ) -> Result<(), SpanMessage> {
@@ -112,8 +112,7 @@ impl Event {
                 _ => Ok(()),
             };
         };
-        // A quaternion has two signs, and no values that are passed.
-        let is_whole = |place: usize| !quaternions.iter().any(|start| (*start..start + 4).contains(&place));
+        let is_whole = |place: usize| !jumps(place);
         let found = columns.iter().find_map(|column| column.place(name.get_ref())).filter(|place| is_whole(*place));
         let Some(place) = found else {
             let names = columns.iter().flat_map(|column| column.names().map(move |name| (name, column.place(name))));

@@ -28,11 +28,14 @@ pub(crate) struct Joint {
     pub(crate) length: f64,
     pub(crate) terms: Terms,
     pub(crate) limits: Option<Limits>,
-    /// Whether the file has its bodies in the other order.
-    pub(crate) is_swapped: bool,
     /// The start by the coordinates of the joint, of bodies without places of their own.
     pub(crate) start: Coordinates,
+    /// 1, or −1 where the file names the bodies in the other order: the sign of angles and shifts there.
+    pub(crate) sign: f64,
 }
+
+/// The attitude of a body, or of space, and the place of its origin.
+pub(crate) type Pose = (Matrix3<f64>, Vector3<f64>);
 
 /// Terms in a joint: those of a slider are of shifts, others of turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -148,6 +151,7 @@ pub(crate) type Names = Spanned<[Spanned<String>; 2]>;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct JointTable {
+    /// The name, by which programs reach it.
     pub(crate) name: Option<Spanned<String>>,
     kind: Spanned<Kind>,
     pub(crate) bodies: Names,
@@ -362,7 +366,7 @@ impl JointTable {
         let limits = limits.transpose()?;
         let length = self.length.map_or(0.0, |length| length.into_inner().value);
         let at = self.at.map(|point| point.value);
-        let joint = Joint { kind, at, axes, zero, length, terms, limits, is_swapped, start };
+        let joint = Joint { kind, at, axes, zero, length, terms, limits, start, sign: 1.0 };
         Ok(if is_swapped { joint.swapped() } else { joint })
     }
 }
@@ -377,7 +381,16 @@ impl Joint {
         let terms = Terms { rest: -terms.rest, effort: terms.effort.map(|effort| -effort), ..terms };
         let start = Coordinates { angle: -angle, rate: -rate, shift: -shift, speed: -speed };
         let limits = limits.map(|limits| Limits { ends: [-limits.ends[1], -limits.ends[0]], ..limits });
-        Self { at, axes, zero: zero.transpose(), terms, limits, start, ..self }
+        Self { at, axes, zero: zero.transpose(), terms, limits, start, sign: -self.sign, ..self }
+    }
+
+    /// The angle about the axis, rad, from −π to π, and the shift along it, m, between bodies in these poses.
+    pub(crate) fn coordinates(&self, [(above, at), (below, to)]: [&Pose; 2]) -> [f64; 2] {
+        let Self { at: points, axes: [axis, _], zero, .. } = self;
+        let turned = above.tr_mul(below) * zero.transpose();
+        let sine = Vector3::new(turned.m32 - turned.m23, turned.m13 - turned.m31, turned.m21 - turned.m12) * 0.5;
+        let apart = above.tr_mul(&(to + below * points[1] - at)) - points[0];
+        [sine.dot(axis).atan2((turned.trace() - 1.0) * 0.5), axis.dot(&apart)]
     }
 
     /// The constraint.

@@ -35,7 +35,7 @@ use crate::file::text::title;
 /// | | `title` |
 /// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame, where three zeros are those of a point mass; or a shape with its middle in the centre of mass, from which the inertia follows, with `m` or a `density`, kg/m³: a `box` by its edges, a `cylinder` or a `capsule` by the `radius` and the `length` of the cylinder and its `axis`, by default the third, a `sphere` by its `radius`, m; a shape beside an inertia is for the page alone; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile); without a position a body is placed by a joint with one that has a place |
 /// | `gravity` | `g`, m/s²; `up`, in space |
-/// | `[[joint]]` | `name`, by default `joint-1` and so on; `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
+/// | `[[joint]]` | `name`, by which programs reach it, by default `joint-1` and so on; `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
 /// | | where the joint starts, of a body without a `position`: `angle` and `rate` about the axis, `shift`, m, and `speed`, m/s, along it, of the second body relative to the first, zero by default |
 /// | | in a joint that turns: `damping`, N m s; `stiffness`, N m/rad, with the angle at `rest`; a motor's `torque` about the axis, N m; dry `friction`: its `torque` and the rate `below` which it is viscous. In a slider: `damping`, N s/m; `stiffness`, N/m, with the shift at `rest`; a `force`, N |
 /// | | `limits` of a pin or a slider: `from` and `to`, angles or shifts, and whether the run is to `stop` where the joint passes one of them. They aren't imposed but watched: each passing is an event with the joint's name |
@@ -272,7 +272,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     let called: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
     let columns = table.output.columns(&Column::of_system(&called, &[]), &DEFAULT)?;
     name_twice(&columns).map_or(Ok(()), |name| Err(shared(&name, &called, &names)))?;
-    let joint_names = names_of_joints(&table.joint)?;
+    let joint_names = names_of_joints(&table.joint, &called)?;
     let joints = table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), (&bodies, &numbered)));
     let (joints, coordinates): (Vec<_>, Vec<_>) = joints.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
     let (placing, unplaced) = place(&mut bodies, &mut is_placed, &joints);
@@ -321,10 +321,13 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         let (span, MethodTable(scheme)) = (method.span(), method.into_inner());
         system.method = of_method(scheme, &system).map_err(|message| (span, message))?;
     }
+    let quaternions = quaternions(&all);
+    // A quaternion has two signs, and no values that are passed.
+    let jumps = |place: usize| quaternions.iter().any(|start| (*start..start + 4).contains(&place));
     for event in table.event {
         let span = event.span();
         let mut event = event.into_inner();
-        event.placed((&all, &quaternions(&all)), Err(SEVERAL), &|| span.clone())?;
+        event.placed((&all, &jumps), Err(SEVERAL), &|| span.clone())?;
         system.event.push(event);
     }
     Ok(system)
@@ -374,20 +377,25 @@ pub(crate) fn quaternions(all: &[Column]) -> Vec<usize> {
     parts.flat_map(|part| part.step_by(4)).collect()
 }
 
-/// The names of the joints, given or by their numbers from one.
-fn names_of_joints(joints: &[Spanned<JointTable>]) -> Result<Vec<String>, SpanMessage> {
-    let mut taken = BTreeSet::new();
-    let mut name = |(number, joint): (usize, &Spanned<JointTable>)| {
-        let Some(name) = &joint.get_ref().name else { return Ok(format!("joint-{}", number + 1)) };
-        if !is_plain(name.get_ref()) {
-            return Err((name.span(), "the `name` of a joint has letters, digits, - and _ only".to_owned()));
+/// The names of the joints, given or by their numbers from one, which are different from each other and from those of bodies.
+fn names_of_joints(joints: &[Spanned<JointTable>], bodies: &[&str]) -> Result<Vec<String>, SpanMessage> {
+    let mut taken: BTreeSet<String> = bodies.iter().map(|&body| body.to_owned()).chain([SPACE.to_owned()]).collect();
+    let mut names: Vec<String> = Vec::new();
+    for (number, joint) in joints.iter().enumerate() {
+        let (name, place) = match &joint.get_ref().name {
+            Some(name) => (name.get_ref().clone(), name.span()),
+            None => (format!("joint-{}", number + 1), joint.span()),
+        };
+        if !is_plain(&name) {
+            return Err((place, "the `name` of a joint has letters, digits, - and _ only".to_owned()));
         }
-        if !taken.insert(name.get_ref().clone()) {
-            return Err((name.span(), format!("there are two joints called `{}`", name.get_ref())));
+        if !taken.insert(name.clone()) {
+            let both = if names.contains(&name) { "there are two joints" } else { "a body and a joint are" };
+            return Err((place, format!("{both} called `{name}`")));
         }
-        Ok(name.get_ref().clone())
-    };
-    joints.iter().enumerate().map(&mut name).collect()
+        names.push(name);
+    }
+    Ok(names)
 }
 
 /// A name that two columns share.

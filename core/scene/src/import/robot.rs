@@ -104,8 +104,9 @@ impl Robot {
             return Err((place, "the model has no body with a mass that moves".to_owned()));
         }
         self.complete(&mut groups, &is_there);
-        let names = unique(groups.iter().map(|group| group.name.as_str()));
-        let joint_names = unique(self.joints.iter().map(|joint| joint.name.as_str()));
+        let own = groups.iter().map(|group| group.name.as_str());
+        let mut names = unique(own.chain(self.joints.iter().map(|joint| joint.name.as_str())));
+        let of_joints = names.split_off(groups.len());
         let mut text = String::new();
         for (number, group) in groups.iter().enumerate().filter(|(number, _)| is_there[*number]) {
             body(&mut text, group, &names[number], &self.joints);
@@ -118,8 +119,8 @@ impl Robot {
             let above = if is_there[arm.parent] { Some(arm.parent) } else { None };
             let centre = above.map_or_else(Vector3::zeros, |above| groups[above].mass.centre);
             let above = above.map_or("space", |above| &names[above]);
-            let _ = writeln!(text, "[[joint]]\nname = \"{}\"", joint_names[arm.joint]);
-            self.joint(&mut text, &arm, (above, centre), (&names[number], group.mass.centre));
+            let name = &of_joints[arm.joint];
+            self.joint(&mut text, (&arm, name), (above, centre), (&names[number], group.mass.centre));
         }
         let head = self.head();
         let run = "[run]\nstep = \"1 ms\"\nduration = 1\n";
@@ -264,7 +265,7 @@ impl Robot {
     fn joint(
         &mut self,
         text: &mut String,
-        arm: &Arm,
+        (arm, plain): (&Arm, &str),
         (above, centre): (&str, Vector3<f64>),
         (below, own): (&str, Vector3<f64>),
     ) {
@@ -278,6 +279,7 @@ impl Robot {
         };
         let point = arm.frame.translation.vector - centre;
         let axis_above = arm.frame.rotation * axis;
+        let _ = writeln!(text, "[[joint]]\nname = \"{plain}\"");
         let _ = writeln!(text, "kind = \"{kind}\"\nbodies = [\"{above}\", \"{below}\"]");
         let _ = writeln!(text, "at = [{}, {}]", list(&point), list(&-own));
         if kind != "ball" {

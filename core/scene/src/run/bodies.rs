@@ -94,7 +94,7 @@ pub(crate) struct Cord {
 
 impl System {
     /// The stepper, and the functions of joints that the others imply at the start, which are left out.
-    pub(crate) fn stepper(&self) -> Result<(MultibodyStepper, Vec<Redundancy>), SetupError> {
+    pub(crate) fn multibody(&self) -> Result<(MultibodyStepper, Vec<Redundancy>), SetupError> {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
         let mut system = Multibody::new();
         for body in &self.bodies {

@@ -3,9 +3,12 @@
 pub(crate) mod bodies;
 pub(crate) mod choose;
 pub(crate) mod course;
+pub(crate) mod data;
+pub(crate) mod devices;
 mod ends;
 mod events;
 pub(crate) mod make;
+mod motors;
 mod nearest;
 mod scene;
 mod second;

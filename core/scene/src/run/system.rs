@@ -10,20 +10,18 @@ use liestep::{SO3, SetupError, StepError};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::file::body::Kinetic;
-use crate::file::joint::{Joint, Limits};
+use crate::file::joint::{Joint, Limits, Pose};
 use crate::file::mistake::Mistake;
 use crate::file::part::{Between, SystemBody};
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::system::System;
+use crate::run::course::MemberStart;
 use crate::run::course::{kind, of_any};
 use crate::run::make::{Course, EventFunction, Listeners, Note, Run, Stop, fast_turn, make, told};
 
 /// The quantity that violates a constraint, for messages.
 const GAP: &str = "lengths in m and cosines of axes together";
-
-/// The place of a body, or of space.
-type Pose = (Matrix3<f64>, Vector3<f64>);
 
 fn pose(stepper: &MultibodyStepper, state: &[f64], body: Option<usize>) -> Pose {
     let Some(body) = body else { return (Matrix3::identity(), Vector3::zeros()) };
@@ -31,14 +29,10 @@ fn pose(stepper: &MultibodyStepper, state: &[f64], body: Option<usize>) -> Pose 
     (*attitude.as_matrix(), place.translation())
 }
 
-/// The angle of a joint about its axis, rad, from −π to π, and its shift along it, m.
+/// The angle and the shift of a joint, see [`Joint::coordinates`].
 fn coordinates(joint: &Between<Joint>, stepper: &MultibodyStepper, state: &[f64]) -> [f64; 2] {
-    let ((above, at), (below, to)) = (pose(stepper, state, joint.bodies[0]), pose(stepper, state, joint.bodies[1]));
-    let Joint { at: points, axes: [axis, _], zero, .. } = &joint.of;
-    let turned = above.tr_mul(&below) * zero.transpose();
-    let sine = Vector3::new(turned.m32 - turned.m23, turned.m13 - turned.m31, turned.m21 - turned.m12) * 0.5;
-    let apart = above.tr_mul(&(to + below * points[1] - at)) - points[0];
-    [sine.dot(axis).atan2((turned.trace() - 1.0) * 0.5), axis.dot(&apart)]
+    let [above, below] = joint.bodies.map(|body| pose(stepper, state, body));
+    joint.of.coordinates([&above, &below])
 }
 
 /// The function that rises through zero where a joint passes one of its limits.
@@ -70,13 +64,12 @@ fn sample(system: &System, stepper: &MultibodyStepper, now: &Moment<'_, AnyStepp
     let coordinates: Vec<_> = system
         .joints
         .iter()
-        .map(|joint| {
-            let sign = if joint.of.is_swapped { -1.0 } else { 1.0 };
-            (joint.of.kind, coordinates(joint, stepper, now.numbers()).map(|coordinate| sign * coordinate))
-        })
+        .map(|joint| (joint.of.kind, joint.of.sign, coordinates(joint, stepper, now.numbers())))
         .collect();
-    numbers.extend(coordinates.iter().filter(|(kind, _)| kind.turns_about_axis()).map(|(_, [angle, _])| angle));
-    numbers.extend(coordinates.iter().filter(|(kind, _)| kind.shifts_along_axis()).map(|(_, [_, shift])| shift));
+    let turning = coordinates.iter().filter(|(kind, ..)| kind.turns_about_axis());
+    numbers.extend(turning.map(|(_, sign, [angle, _])| sign * angle));
+    let shifting = coordinates.iter().filter(|(kind, ..)| kind.shifts_along_axis());
+    numbers.extend(shifting.map(|(_, sign, [_, shift])| sign * shift));
     if has_reactions {
         let none = || vec![[Vector3::repeat(f64::NAN); 2]; system.joints.len()];
         let forces = stepper.joint_forces(now.numbers()).unwrap_or_else(|_| none());
@@ -156,8 +149,26 @@ impl System {
         first.map_err(|stop| self.mistake(stop))
     }
 
+    /// The stepper of the system, with its initial state.
+    ///
+    /// # Errors
+    ///
+    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the system can't be started.
+    pub fn stepper(&self) -> Result<MemberStart, Mistake> {
+        let start = || {
+            let (stepper, _) = self.multibody().map_err(Stop::Setup)?;
+            let state = self.start(&stepper).map_err(Stop::Start)?;
+            let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
+            self.check_springs(&places)?;
+            let any = AnyStepper::new(stepper);
+            let state = any.state_of(&state).ok_or_else(|| Stop::Other("a state of another system".to_owned()))?;
+            Ok((any, state))
+        };
+        start().map_err(|stop| self.mistake(stop))
+    }
+
     pub(crate) fn simulate(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Stop> {
-        let (stepper, left_out) = self.stepper().map_err(Stop::Setup)?;
+        let (stepper, left_out) = self.multibody().map_err(Stop::Setup)?;
         let state = self.start(&stepper).map_err(Stop::Start)?;
         let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
         let of_springs = self.check_springs(&places)?;

@@ -65,6 +65,15 @@ impl Propagator for MultibodyStepper {
         Self::step(self, state)
     }
 
+    fn step_forced(&self, state: &mut [f64], force: &[f64]) -> Result<StepReport, StepError> {
+        let (forces, rest) = force.as_chunks::<6>();
+        if !rest.is_empty() {
+            return Err(StepError::NonFinite { what: "control force" });
+        }
+        let forces: Vec<_> = forces.iter().copied().map(Vector6::from).collect();
+        Self::step_forced(self, state, &forces)
+    }
+
     fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
         Self::run(self, state, steps)
     }

@@ -117,6 +117,11 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// \[MW01\], section 3.2.
     pub fn step_forced(&self, state: &mut StateOf<S, P>, force: &Vector<S>) -> Result<StepReport, StepError> {
         const { assert!(!P::VARIES || P::COUNTS_TIME, "a force changes the length that a density gives its step") }
+        self.forced(state, force)
+    }
+
+    /// [`step_forced`](Self::step_forced), also where a force changes the length of its step.
+    pub(crate) fn forced(&self, state: &mut StateOf<S, P>, force: &Vector<S>) -> Result<StepReport, StepError> {
         if !force.is_finite() {
             return Err(StepError::NonFinite { what: "control force" });
         }

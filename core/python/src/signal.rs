@@ -1,0 +1,152 @@
+//! Parameters of terms that change with time: by values at times, or by a function of Python.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use liestep_late::{Between, Course};
+use pyo3::prelude::*;
+
+use crate::failure::Failure;
+
+/// A signal by values at times, as `liestep.signal` has it.
+#[pyclass(frozen, module = "liestep._native")]
+pub(crate) struct Signal(Arc<liestep_late::Signal>);
+
+#[pymethods]
+impl Signal {
+    #[new]
+    fn new(times: Vec<f64>, values: Vec<f64>, are_lines: bool) -> PyResult<Self> {
+        let between = if are_lines { Between::Lines } else { Between::Steps };
+        let signal = liestep_late::Signal::new(times, values, between);
+        Ok(Self(Arc::new(signal.map_err(|error| Failure::setup(&error))?)))
+    }
+
+    /// The first time with a value, and the last one, s.
+    #[getter]
+    fn ends(&self) -> [f64; 2] {
+        self.0.ends()
+    }
+
+    /// The values at these times, one after the other; NaN where there are none.
+    #[allow(clippy::needless_pass_by_value)] // as Python gives it
+    fn at(&self, times: Vec<f64>) -> Vec<f64> {
+        let mut values = vec![0.0; self.0.width() * times.len()];
+        for (time, value) in times.iter().zip(values.chunks_mut(self.0.width())) {
+            self.0.at(*time, value);
+        }
+        values
+    }
+}
+
+/// A parameter that changes with time, as Python describes it.
+#[derive(FromPyObject)]
+pub(crate) struct Change {
+    name: String,
+    /// The place of its first number among those of all terms, and how many it has.
+    first: usize,
+    width: usize,
+    /// Whether its values are of length one.
+    is_direction: bool,
+    signal: Option<Py<Signal>>,
+    /// The function of a list of times that returns the numbers of all values.
+    function: Option<Py<PyAny>>,
+}
+
+/// A length of one up to this is meant to be one.
+const NEAR_ONE: f64 = 1e-3;
+
+fn length(vector: &[f64]) -> f64 {
+    vector.iter().map(|part| part * part).sum::<f64>().sqrt()
+}
+
+/// All parameters of a scene that change with time.
+pub(crate) struct Changes {
+    all: Vec<(Change, Option<Arc<liestep_late::Signal>>)>,
+    /// The first cause, since it was last asked for, why there was no value.
+    cause: Mutex<Option<Failure>>,
+}
+
+impl Changes {
+    pub(crate) fn of(changes: Vec<Change>) -> Self {
+        let with_signal = |change: Change| {
+            let signal = change.signal.as_ref().map(|signal| Arc::clone(&signal.get().0));
+            (change, signal)
+        };
+        Self { all: changes.into_iter().map(with_signal).collect(), cause: Mutex::default() }
+    }
+
+    pub(crate) const fn are_none(&self) -> bool {
+        self.all.is_empty()
+    }
+
+    /// The cause why there was no value, since it was last asked for.
+    pub(crate) fn cause(&self) -> Option<Failure> {
+        self.cause.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    fn because(&self, cause: impl FnOnce() -> Failure) {
+        self.cause.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(cause);
+    }
+
+    /// Writes all values, those of signals by this function.
+    fn write(&self, numbers: &mut [f64], time: f64, value: impl Fn(&liestep_late::Signal, &mut [f64])) {
+        for (change, signal) in &self.all {
+            let Some(own) = numbers.get_mut(change.first..change.first + change.width) else { continue };
+            match (signal, &change.function) {
+                (Some(signal), _) => value(signal, own),
+                (None, Some(function)) => self.call(change, function, time, own),
+                (None, None) => own.fill(f64::NAN),
+            }
+            if change.is_direction {
+                let length = length(own);
+                for part in own.iter_mut() {
+                    *part /= length;
+                }
+            }
+            if !own.iter().all(|number| number.is_finite()) {
+                self.because(|| {
+                    let ends = signal.as_ref().map(|signal| signal.ends());
+                    let has = ends.map_or_else(String::new, |[first, last]| match last {
+                        f64::INFINITY => format!(": its signal has values from {first} s on"),
+                        _ => format!(": its signal has values from {first} to {last} s"),
+                    });
+                    Failure::Of("StepError", format!("`{}` has no value about {time} s{has}", change.name))
+                });
+            }
+        }
+    }
+
+    fn call(&self, change: &Change, function: &Py<PyAny>, time: f64, value: &mut [f64]) {
+        let made = Python::attach(|py| function.call1(py, (vec![time],))?.extract::<Vec<f64>>(py));
+        match made {
+            Ok(numbers) if numbers.len() == change.width => {
+                value.copy_from_slice(&numbers);
+                let length = length(value);
+                if change.is_direction && (length - 1.0).abs() > NEAR_ONE {
+                    let name = &change.name;
+                    let message =
+                        format!("`{name}` is a direction, and isn't of length one but of {length} at {time} s");
+                    self.because(|| Failure::Of("SetupError", message));
+                    value.fill(f64::NAN);
+                }
+            }
+            Ok(_) => value.fill(f64::NAN),
+            Err(error) => {
+                self.because(|| Failure::Raised(error));
+                value.fill(f64::NAN);
+            }
+        }
+    }
+}
+
+/// The numbers of a scene's terms as functions of time.
+pub(crate) struct SceneCourse(pub(crate) Arc<Changes>);
+
+impl Course for SceneCourse {
+    fn at(&self, time: f64, numbers: &mut [f64]) {
+        self.0.write(numbers, time, |signal, value| signal.at(time, value));
+    }
+
+    fn over(&self, [start, length]: [f64; 2], numbers: &mut [f64]) {
+        self.0.write(numbers, start + length * 0.5, |signal, value| signal.mean([start, length], value));
+    }
+}

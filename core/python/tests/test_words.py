@@ -1,0 +1,44 @@
+"""Messages speak of what Python has."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from conftest import heavy_top
+
+import liestep as ls
+
+
+def declared(l: str, **parameters: object) -> object:  # noqa: E741
+    return ls.lagrangian("SO3", l=l, discretise="trapezoid(Cayley)", J=[3, 3, 4], **parameters)
+
+
+TURNS = "1/2 * Omega.dot(J * Omega)"
+E = ls.DeclarationError
+
+
+@pytest.mark.parametrize("made,message", [
+    (lambda: declared(TURNS + " - m"), "`m` isn't known here: pass it by its name, or write its value\nknown: I, Omega, J"),
+    (lambda: declared(TURNS + " * (0.1 * t).exp()"), "a Lagrangian has no time: pass what changes with it as a `ls.signal`"),
+    (lambda: ls.force("SO3", work="t * a.dot(eta)", a=[0, 0, 1]), "virtual work has no time: pass what changes with it as a `ls.signal`"),
+    (lambda: declared(TURNS + " - w.dot(a)", a=[0, 0, 1]), 'declare it with `advected={"w": "up"}`, where `up` holds its spatial value'),
+    (lambda: declared(TURNS, m=3), "`m` isn't used in the Lagrangian: leave it out, or use it"),
+    (lambda: declared(TURNS + " - w.z", up=np.eye(3), advected={"w": "up"}), "carries a vector of 3: use a list of 3 numbers"),
+    (lambda: declared(TURNS + " - a.dot(a) / a", a=[0, 0, 1]), "multiply by `inverse(F)`, or by that of a parameter"),
+    (lambda: ls.lagrangian("SE2", l_d="(F - I).norm_squared() / h + h * p.z", advected={"p": "up"}, up=ls.point([1, 2, 3])),
+     "moves points of 2: use `ls.point` of 2 numbers"),
+], ids=lambda one: one if isinstance(one, str) else "")
+def test_a_mistake_of_a_text_has_words_of_python(made, message):
+    with pytest.raises(ls.DeclarationError) as found:
+        made()
+    every = "\n".join(one for one, _, _ in found.value.mistakes) or str(found.value)
+    assert message in every
+    assert not any(word in every for word in ("struct", "step_with", "<f64", "given(", "field"))
+
+
+def test_a_step_without_a_solution_has_words_of_python():
+    with pytest.raises(ls.StepError) as found:
+        heavy_top().stepper(1.0).run(velocity=[0, 0, 12], until=3)
+    said = str(found.value)
+    assert 'let `substeps` divide such steps. On SO(3) `ls.body(J, kinetic="geodesic")` turns a spin exactly' in said
+    assert "or_substeps" not in said and "Body`" not in said
