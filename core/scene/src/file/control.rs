@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-use crate::file::law::{Kind, Law, Value};
+use crate::file::law::{Kind, Law, Value, within};
 use crate::file::mistake::{SpanMessage, advised};
 use crate::file::orbit::{FieldInTime, Nadir, Parameter as _, Time, towards_mass};
 use crate::file::parameter::{Parameter, in_value};
@@ -250,7 +250,7 @@ impl Control {
 
     /// A torque within the limits of the axes, and then of the norm.
     pub(crate) fn limited(&self, torque: Vector3<f64>) -> Vector3<f64> {
-        let within = torque.zip_map(&self.largest, |part, most| part.max(-most).min(most));
+        let within = torque.zip_map(&self.largest, |part, most| within(part, [-most, most]));
         let norm = within.norm();
         if norm > self.largest_norm { within * (self.largest_norm / norm) } else { within }
     }
