@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use liestep_late::Signal;
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
@@ -125,7 +125,8 @@ impl Controller {
             velocity -= attitude.tr_mul(&orbit.turning(seen.now.time));
             attitude = orbit.local_vertical(seen.now.time).tr_mul(&attitude);
         }
-        let error = self.target.inverse() * UnitQuaternion::from_matrix(&attitude);
+        let error =
+            self.target.inverse() * UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(attitude));
         // The sign of the shorter turn.
         let error = if error.w < 0.0 { -error.into_inner() } else { error.into_inner() };
         let own = [
