@@ -12,6 +12,8 @@ pub(super) struct Looks {
     pub(super) above: Option<bool>,
     /// A bound on the function's second derivative.
     pub(super) bound: Option<f64>,
+    /// The period of a function whose values go around.
+    pub(super) period: Option<f64>,
     /// The accuracy of a zero.
     pub(super) rounding: f64,
 }
@@ -55,7 +57,9 @@ pub(super) fn zeros<E>(
     looks: Looks,
     function: &mut impl FnMut(f64) -> Result<f64, E>,
 ) -> Result<Option<Vec<(f64, bool)>>, E> {
-    let Looks { ends, mut above, bound, rounding } = looks;
+    let Looks { ends, mut above, bound, period, rounding } = looks;
+    // Values half a period from zero are neighbours on the circle of values.
+    let jumps = |from: f64, to: f64| period.is_some_and(|period| (to - from).abs() > 0.5 * period.abs());
     let (mut found, mut looked) = (Vec::new(), 0);
     let mut parts = vec![Part { begin: (0.0, ends[0]), end: (1.0, ends[1]) }];
     while let Some(part) = parts.pop() {
@@ -73,8 +77,11 @@ pub(super) fn zeros<E>(
             continue;
         }
         let Some(next) = side(part.end.1) else { continue };
-        if above.is_some_and(|above| above != next) {
-            found.push((located(part, next, rounding, function)?, next));
+        if above.is_some_and(|above| above != next) && !jumps(part.begin.1, part.end.1) {
+            let (zero, [before, after]) = located(part, next, rounding, function)?;
+            if !jumps(before, after) {
+                found.push((zero, next));
+            }
         }
         above = Some(next);
     }
@@ -85,7 +92,7 @@ pub(super) fn zeros<E>(
 const MOST_ITERATIONS: u32 = 120;
 
 /// The zero in a part whose ends have different signs, or that begins with a zero, by inverse quadratic interpolation
-/// if that is sure to converge and bisection otherwise.
+/// if that is sure to converge and bisection otherwise; and the values at the ends of the last bracket.
 ///
 /// # Source
 ///
@@ -96,18 +103,18 @@ fn located<E>(
     rising: bool,
     rounding: f64,
     function: &mut impl FnMut(f64) -> Result<f64, E>,
-) -> Result<f64, E> {
+) -> Result<(f64, [f64; 2]), E> {
     // `a` is the newest point, `b` on the other side of the zero, `c` the one before.
     let (mut a, mut b) = (part.end, part.begin);
     if b.1 == 0.0 || side(b.1) == Some(rising) {
-        return Ok(b.0);
+        return Ok((b.0, [b.1; 2]));
     }
     let mut share = 0.5;
     for iteration in 0..MOST_ITERATIONS {
         let place = a.0 + share * (b.0 - a.0);
         let value = function(place)?;
         if value == 0.0 {
-            return Ok(place);
+            return Ok((place, [value; 2]));
         }
         let c;
         if side(value) == side(a.1) {
@@ -134,7 +141,7 @@ fn located<E>(
         let least = (nearest / length).min(0.5);
         share = if share.is_nan() { 0.5 } else { share.clamp(least, 1.0 - least) };
     }
-    Ok(if a.1.abs() <= b.1.abs() { a.0 } else { b.0 })
+    Ok((if a.1.abs() <= b.1.abs() { a.0 } else { b.0 }, [a.1, b.1]))
 }
 
 /// Whether a value is above zero; none for zero.
@@ -151,13 +158,18 @@ mod tests {
 
     /// The zeros of a function with this bound, and the number of evaluations.
     fn found(bound: Option<f64>, function: impl Fn(f64) -> f64) -> (Vec<(f64, bool)>, u32) {
+        found_around(None, bound, function)
+    }
+
+    /// [`found`] of a function whose values go around with this period.
+    fn found_around(period: Option<f64>, bound: Option<f64>, function: impl Fn(f64) -> f64) -> (Vec<(f64, bool)>, u32) {
         let count = Cell::new(0);
         let mut look = |x: f64| -> Result<f64, Infallible> {
             count.set(count.get() + 1);
             Ok(function(x))
         };
         let ends = [function(0.0), function(1.0)];
-        let looks = Looks { ends, above: super::side(ends[0]), bound, rounding: 0.25 * f64::EPSILON };
+        let looks = Looks { ends, above: super::side(ends[0]), bound, period, rounding: 0.25 * f64::EPSILON };
         let Ok(zeros) = zeros(looks, &mut look);
         (zeros.unwrap(), count.get())
     }
@@ -195,6 +207,29 @@ mod tests {
             }
             assert!(looks < 400, "{looks} looks");
             assert!(found(Some(49.1), |x| curved(x, -offset)).0.is_empty());
+        }
+    }
+
+    /// An angle in turns, from −½ to ½, rises or falls by up to 0.9 turns from many places; its zeros are whole turns.
+    #[test]
+    fn a_jump_of_an_angle_is_no_zero() {
+        for k in 0..400 {
+            for turn in [0.07, 0.4, 0.6, 0.9, -0.07, -0.4, -0.6, -0.9] {
+                let first = 0.0013 + 0.0025 * f64::from(k);
+                let whole = |x: f64| first + turn * x;
+                let angle = |x: f64| whole(x) - whole(x).round();
+                let turns = if turn > 0.0 { [1.0, 2.0] } else { [0.0, 1.0] };
+                let expected = turns.map(|whole| (whole - first) / turn);
+                let expected: Vec<f64> = expected.into_iter().filter(|x| (0.0..1.0).contains(x)).collect();
+                // Beyond half a turn only a bound finds a zero and a jump in one step.
+                let bound = (turn.abs() > 0.5).then_some(16.0);
+                let (zeros, looks) = found_around(Some(1.0), bound, angle);
+                assert_eq!(zeros.len(), expected.len(), "{first} {turn}: {zeros:?}");
+                for (&(zero, rises), expected) in zeros.iter().zip(expected) {
+                    assert!((zero - expected).abs() < 1e-14 && rises == (turn > 0.0), "{first} {turn}: {zero}");
+                }
+                assert!(bound.is_some() || looks <= if zeros.is_empty() { 0 } else { 10 }, "{looks} looks");
+            }
         }
     }
 

@@ -23,25 +23,26 @@ pub struct Event {
     falling: bool,
     terminal: bool,
     curvature: Option<f64>,
+    period: Option<f64>,
 }
 
 impl Event {
     /// An event at which the function rises through zero.
     #[must_use]
     pub const fn rising() -> Self {
-        Self { rising: true, falling: false, terminal: false, curvature: None }
+        Self { rising: true, falling: false, terminal: false, curvature: None, period: None }
     }
 
     /// An event at which the function falls through zero.
     #[must_use]
     pub const fn falling() -> Self {
-        Self { rising: false, falling: true, terminal: false, curvature: None }
+        Self { rising: false, falling: true, terminal: false, curvature: None, period: None }
     }
 
     /// An event at which the function crosses zero either way.
     #[must_use]
     pub const fn crossing() -> Self {
-        Self { rising: true, falling: true, terminal: false, curvature: None }
+        Self { rising: true, falling: true, terminal: false, curvature: None, period: None }
     }
 
     /// Ends the run in the step with the first such event; nothing later in that step is observed.
@@ -62,6 +63,16 @@ impl Event {
     #[must_use]
     pub const fn curvature(self, bound: f64) -> Self {
         Self { curvature: Some(bound), ..self }
+    }
+
+    /// Sets the period of a function whose values go around between minus and plus half of it, as those of an angle do,
+    /// 2π for rad: where they jump from one end to the other, that isn't a crossing.
+    ///
+    /// A step in which the function changes by less than half a period has one crossing at most, which is found; in a
+    /// longer step [`curvature`](Self::curvature) finds it.
+    #[must_use]
+    pub const fn period(self, period: f64) -> Self {
+        Self { period: Some(period), ..self }
     }
 
     /// Whether the event ends the run.
@@ -139,7 +150,7 @@ pub(super) fn crossings<I: Integrator>(
         let next = watched.look(now, event)?;
         let (value, above) = (core::mem::replace(&mut watched.value, next), watched.above);
         watched.above = side(next).or(above);
-        let bound = watched.event.curvature.map(|bound| bound.abs() * h * h);
+        let (period, bound) = (watched.event.period, watched.event.curvature.map(|bound| bound.abs() * h * h));
         // Most steps have no crossing.
         if bound.is_none() && (above.is_none() || watched.above == above) {
             continue;
@@ -151,7 +162,7 @@ pub(super) fn crossings<I: Integrator>(
             watched.look(&Moment::at(integrator, &motion, real(time(fraction)), None), event)
         };
         let rounding = 0.25 * f64::EPSILON * ((begun / h).abs() + 1.0);
-        let looks = Looks { ends: [value, next], above, bound, rounding };
+        let looks = Looks { ends: [value, next], above, bound, period, rounding };
         let Some(zeros) = zeros(looks, &mut look)? else {
             return Err(RunError::TooManyLooks { event, time: begun });
         };

@@ -184,6 +184,29 @@ fn an_angle_to_a_direction_is_an_event() {
     assert!(told.contains("quaternion [0.900447, 0.000000, 0.000000, 0.434966]"), "{told}");
 }
 
+/// A body that turns about one of its axes passes a roll or a yaw once a turn, and nothing where they jump from π to −π: on so
+/// wide an orbit the local vertical rests.
+#[test]
+fn a_roll_and_a_yaw_are_passed_once_a_turn() {
+    let folder = folder("a_roll_and_a_yaw_are_passed_once_a_turn");
+    for (name, velocity) in [("roll", "[0.5, 0, 0]"), ("yaw", "[0, 0, 0.5]")] {
+        let text = format!(
+            "title = \"A spin\"\n[body]\nmoments = [1, 1, 2]\nkinetic = \"geodesic\"\n[start]\nrelative_to = \"local \
+             vertical\"\nrpy = [0, 0, 0]\nvelocity = {velocity}\n[orbit]\nperiod = 1e12\nnormal = [0.6, -0.48, 0.64]\n\
+             [run]\nduration = 30\nstep = 0.1\n[[event]]\nname = \"there\"\ncolumn = \"{name}\"\nvalue = \"100 deg\"\n"
+        );
+        fs::write(folder.join("scene.toml"), text).unwrap();
+        printed(&folder, &["run", "scene.toml", "--csv", "--out", "."]);
+        let events = fs::read_to_string(folder.join("scene.events.csv")).unwrap();
+        let rows: Vec<Vec<&str>> = events.lines().skip(1).map(|row| row.split(',').collect()).collect();
+        assert_eq!(rows.len(), 3, "{events}");
+        for (row, turn) in rows.iter().zip([0.0, 1.0, 2.0]) {
+            let (time, expected) = (row[2].parse::<f64>().unwrap(), (100.0 * DEGREE + turn * TAU) / 0.5);
+            assert!(row[1] == "1" && (time - expected).abs() < 1e-9, "{time} for {expected}: {events}");
+        }
+    }
+}
+
 /// Each sequence of axes is the product of its turns, and its rates are those of the attitude's change.
 #[test]
 fn each_sequence_is_the_product_of_its_turns() {

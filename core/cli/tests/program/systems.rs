@@ -182,6 +182,35 @@ fn limits_and_columns_are_events() {
     assert!((slid.samples().last().unwrap().time - 0.6).abs() < 1e-9);
 }
 
+/// A crank that turns uniformly passes an angle once a turn, in the direction in which it turns, and nothing where the angle
+/// jumps from π to −π.
+#[test]
+fn a_crank_passes_an_angle_once_a_turn() {
+    for value in [-100.0_f64, 45.0, 90.0, 179.9, -179.9, 360.0] {
+        for direction in ["either", "rising", "falling"] {
+            for rate in [2.0, -2.0] {
+                let event = format!(
+                    "[[event]]\nname = \"there\"\ncolumn = \"elbow_angle\"\nvalue = \"{value} deg\"\ndirection = \
+                     \"{direction}\""
+                );
+                let run = run(&free_pin(&format!("name = \"elbow\"\nrate = {rate}"), &event));
+                // The angle is rate t, up to 8.
+                let turns = (-2..=2).map(|turn| (value.to_radians() + f64::from(turn) * std::f64::consts::TAU) / rate);
+                let mut expected: Vec<_> = turns.filter(|time| *time > 1e-9 && *time < 4.0).collect();
+                expected.sort_by(f64::total_cmp);
+                if direction == if rate > 0.0 { "falling" } else { "rising" } {
+                    expected.clear();
+                }
+                let found: Vec<_> = run.happenings().iter().map(|one| (one.rising, one.sample.time)).collect();
+                assert_eq!(found.len(), expected.len(), "{value} {direction} {rate}: {found:?} for {expected:?}");
+                for ((rising, time), expected) in found.iter().zip(expected) {
+                    assert!(*rising == (rate > 0.0) && (time / expected - 1.0).abs() < 4e-5, "{time} for {expected}");
+                }
+            }
+        }
+    }
+}
+
 /// Forces and torques of joints as columns: those of a weight on a weld, and of a turn about a pin.
 #[test]
 fn forces_of_joints_are_columns() {

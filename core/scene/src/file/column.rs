@@ -175,6 +175,15 @@ impl Column {
         self.names().position(|own| own == name).map(|at| part.start + at)
     }
 
+    /// Whether the number of this place in a sample is an angle that jumps from π to −π.
+    pub(crate) fn goes_around(&self, place: usize) -> bool {
+        match self.key {
+            "angle" => true,
+            "roll-pitch-yaw" => self.place("pitch") != Some(place),
+            _ => false,
+        }
+    }
+
     /// The numbers of these columns in the state `now` of a run that started from `first`.
     pub(crate) fn row(columns: &[Self], first: &Sample, now: &Sample) -> Vec<f64> {
         let numbers = |column: &Self| match &column.numbers {

@@ -72,7 +72,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     for (number, event) in file.event.iter_mut().enumerate() {
         let at = || events.and_then(|events| events.get(number)).map_or(0..0, Spanned::span);
         let one_body = if view.group.is_rotation() { Ok(()) } else { Err(NO_BODY) };
-        event.placed((&view.columns(), &|place| view.jumps(place)), one_body, &at).map_err(located)?;
+        event.placed((&view.columns(), &view.group.quaternions), one_body, &at).map_err(located)?;
     }
     at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
     file.over_time.iter().find_map(|one| of_signal(one, &file)).map_or(Ok(()), Err).map_err(located)?;

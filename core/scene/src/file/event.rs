@@ -31,6 +31,8 @@ pub(crate) enum Quantity {
     Axis(usize, f64),
     /// A number of a sample by its place.
     Column(usize, f64),
+    /// An angle of a sample that goes around, by its place.
+    Angle(usize, f64),
 }
 
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
@@ -98,11 +100,11 @@ impl TryFrom<EventTable> for Event {
 }
 
 impl Event {
-    /// Finds the place of a column among these, of which the numbers in some places jump, or refuses the quantity of one body
+    /// Finds the place of a column among these, which have quaternions in some places, or refuses the quantity of one body
     /// elsewhere: `one_body` says why there is none.
     pub(crate) fn placed(
         &mut self,
-        (columns, jumps): (&[Column], &dyn Fn(usize) -> bool),
+        (columns, quaternions): (&[Column], &[usize]),
         one_body: Result<(), &str>,
         at: &dyn Fn() -> Range<usize>,
     ) -> Result<(), SpanMessage> {
@@ -112,17 +114,19 @@ impl Event {
                 _ => Ok(()),
             };
         };
-        let is_whole = |place: usize| !jumps(place);
-        let found = columns.iter().find_map(|column| column.place(name.get_ref())).filter(|place| is_whole(*place));
-        let Some(place) = found else {
+        // A quaternion has two signs, and no values that are passed.
+        let is_whole = |place: usize| !quaternions.iter().any(|start| (*start..start + 4).contains(&place));
+        let found = columns.iter().find_map(|column| Some((column, column.place(name.get_ref())?)));
+        let Some((column, place)) = found.filter(|(_, place)| is_whole(*place)) else {
             let names = columns.iter().flat_map(|column| column.names().map(move |name| (name, column.place(name))));
             let names = names.filter(|(_, place)| place.is_some_and(is_whole)).map(|(name, _)| format!("`{name}`"));
             let names = names.collect::<Vec<_>>().join(", ");
             let message = format!("unknown variant `{}`, expected one of {names}", name.get_ref());
             return Err((name.span(), advised(&message)));
         };
-        if let Quantity::Column(own, _) = &mut self.quantity {
-            *own = place;
+        if let Quantity::Column(_, value) = self.quantity {
+            self.quantity =
+                if column.goes_around(place) { Quantity::Angle(place, value) } else { Quantity::Column(place, value) };
         }
         Ok(())
     }

@@ -112,14 +112,6 @@ impl View {
         Column::of_group(&self.group).into_iter().chain(angles).chain(local).chain(speeds).chain(control).collect()
     }
 
-    /// Whether the number of this place jumps somewhere, so that an event can't be its passage of a value: a quaternion
-    /// has two signs, and roll and yaw go around.
-    pub(crate) fn jumps(&self, place: usize) -> bool {
-        let local = self.local();
-        let goes_around = local.contains(&place) && place != local.start + 1;
-        goes_around || self.group.quaternions.iter().any(|start| (*start..start + 4).contains(&place))
-    }
-
     /// The angles of a sample's numbers, rad, with their names.
     pub(crate) fn named<'a>(&'a self, numbers: &'a [f64]) -> impl Iterator<Item = (&'a str, f64)> {
         let names = self.pointing.iter().map(|pointing| pointing.name.as_str());

@@ -14,8 +14,9 @@ pub struct Sample {
     pub time: f64,
     /// States of the bodies, in the order of the file; none on another group than SO(3).
     pub bodies: Vec<BodySample>,
-    /// Numbers of a scene on one group, empty for several bodies: the attitude's columns as a recorder has them, the
-    /// components of velocity, momentum and momentum in space, the energy, and the distance from the group.
+    /// Numbers of a scene on one group: the attitude's columns as a recorder has them, the components of velocity, momentum
+    /// and momentum in space, the energy, the distance from the group, and those of pointings, laws and wheels. Of several
+    /// bodies those of all columns, in their order.
     pub numbers: Vec<f64>,
     /// The places of quaternions among the numbers.
     pub(crate) quaternions: Arc<[usize]>,

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use liestep::recording;
 use liestep::with::Scheme;
@@ -62,6 +63,8 @@ pub struct System {
     pub(crate) picture: PlanePicture,
     pub(crate) output: Output,
     pub(crate) columns: Vec<Column>,
+    /// The places of quaternions in a sample.
+    pub(crate) quaternions: Arc<[usize]>,
     pub(crate) event: Vec<Event>,
     pub(crate) sweep: Option<Box<Sweep<Self>>>,
     pub(crate) path: PathBuf,
@@ -308,6 +311,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         picture: table.picture,
         output: table.output,
         columns: Vec::new(),
+        quaternions: [].into(),
         event: Vec::new(),
         sweep: None,
         path: path.to_owned(),
@@ -321,13 +325,11 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         let (span, MethodTable(scheme)) = (method.span(), method.into_inner());
         system.method = of_method(scheme, &system).map_err(|message| (span, message))?;
     }
-    let quaternions = quaternions(&all);
-    // A quaternion has two signs, and no values that are passed.
-    let jumps = |place: usize| quaternions.iter().any(|start| (*start..start + 4).contains(&place));
+    system.quaternions = quaternions(&all);
     for event in table.event {
         let span = event.span();
         let mut event = event.into_inner();
-        event.placed((&all, &jumps), Err(SEVERAL), &|| span.clone())?;
+        event.placed((&all, &system.quaternions), Err(SEVERAL), &|| span.clone())?;
         system.event.push(event);
     }
     Ok(system)
@@ -372,7 +374,7 @@ const SEVERAL: &str =
     "only a single body has this quantity: of several an event has a `column` with a `value`, or an `energy`";
 
 /// The places of quaternions among the numbers of these columns.
-pub(crate) fn quaternions(all: &[Column]) -> Vec<usize> {
+fn quaternions(all: &[Column]) -> Arc<[usize]> {
     let parts = all.iter().filter(|column| column.key() == "quaternion").filter_map(Column::part);
     parts.flat_map(|part| part.step_by(4)).collect()
 }

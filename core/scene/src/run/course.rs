@@ -1,5 +1,6 @@
 //! Samples, steps and event functions for the run of one body.
 
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use liestep::groups::LieGroup as _;
@@ -93,8 +94,7 @@ pub(crate) fn course(file: &SceneFile, steps: u64) -> Course<'_> {
 /// The events that a run detects.
 pub(crate) fn watches(file: &SceneFile) -> Vec<(recording::Event, EventFunction<AnyStepper>)> {
     let watch = |event: &Event| -> (_, EventFunction<_>) {
-        let kind = kind(event.direction);
-        (if event.stops { kind.terminal() } else { kind }, Box::new(function(event.quantity, file)))
+        (ended(kind(event), event.stops), Box::new(function(event.quantity, file)))
     };
     file.event.iter().map(watch).collect()
 }
@@ -106,20 +106,26 @@ pub type MemberEvent<I> = (String, recording::Event, Box<dyn Fn(&Moment<'_, I>) 
 impl SceneFile {
     /// The events to be detected for the members of an ensemble.
     pub fn member_events<I: BodyIntegrator>(&self) -> impl Iterator<Item = MemberEvent<I>> {
-        let of = move |Event { name, quantity, direction, stops, .. }: &Event| -> MemberEvent<I> {
-            (name.clone(), kind(*direction), Box::new(function(*quantity, self)), *stops)
+        let of = move |event: &Event| -> MemberEvent<I> {
+            (event.name.clone(), kind(event), Box::new(function(event.quantity, self)), event.stops)
         };
         self.event.iter().map(of)
     }
 }
 
-/// The kind of event for a direction.
-pub(crate) fn kind(direction: Direction) -> recording::Event {
-    match direction {
+/// The kind of an event, which doesn't end a run.
+pub(crate) fn kind(event: &Event) -> recording::Event {
+    let kind = match event.direction {
         Direction::Rising => recording::Event::rising(),
         Direction::Falling => recording::Event::falling(),
         Direction::Either => recording::Event::crossing(),
-    }
+    };
+    if let Quantity::Angle(..) = event.quantity { kind.period(TAU) } else { kind }
+}
+
+/// The kind of an event that ends a run, if it does.
+pub(crate) fn ended(kind: recording::Event, stops: bool) -> recording::Event {
+    if stops { kind.terminal() } else { kind }
 }
 
 /// The function that rises through zero with the quantity through its value. A tilt is that of the picture's axis, body
@@ -135,7 +141,9 @@ fn function<I: BodyIntegrator>(
         Quantity::Speed(speed) => I::rate(now.velocity()).norm_squared() - speed * speed,
         Quantity::Velocity(component, rate) => I::rate(now.velocity())[component] - rate,
         Quantity::Axis(component, part) => (I::attitude(now).as_matrix() * axis)[component] - part,
-        Quantity::Energy(_) | Quantity::Column(..) => of_any(quantity, now, || sample(&view, now)),
+        Quantity::Energy(_) | Quantity::Column(..) | Quantity::Angle(..) => {
+            of_any(quantity, now, || sample(&view, now))
+        }
     }
 }
 
@@ -148,6 +156,10 @@ pub(crate) fn of_any<I: Integrator<Scalar = f64>>(
     match quantity {
         Quantity::Energy(energy) => now.energy() - energy,
         Quantity::Column(place, value) => sample().numbers[place] - value,
+        Quantity::Angle(place, value) => {
+            let turned = sample().numbers[place] - value;
+            turned - TAU * (turned / TAU).round()
+        }
         _ => f64::NAN,
     }
 }

@@ -17,7 +17,7 @@ use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::system::System;
 use crate::run::course::MemberStart;
-use crate::run::course::{kind, of_any};
+use crate::run::course::{ended, kind, of_any};
 use crate::run::make::{Course, EventFunction, Listeners, Note, Run, Stop, fast_turn, make, told};
 
 /// The quantity that violates a constraint, for messages.
@@ -54,7 +54,6 @@ fn sample(system: &System, stepper: &MultibodyStepper, now: &Moment<'_, AnyStepp
     let Sample { bodies, energy, momentum, angular_momentum, gap, .. } = &sample;
     let mut numbers: Vec<f64> = Vec::new();
     numbers.extend(bodies.iter().flat_map(|body| &body.position));
-    let first = numbers.len();
     numbers.extend(bodies.iter().flat_map(|body| body.quaternion));
     numbers.extend(bodies.iter().flat_map(|body| &body.velocity));
     numbers.extend(bodies.iter().flat_map(|body| &body.moving));
@@ -80,7 +79,7 @@ fn sample(system: &System, stepper: &MultibodyStepper, now: &Moment<'_, AnyStepp
             numbers.extend(&(torque - arm.cross(force)));
         }
     }
-    sample.quaternions = (first..first + 4 * sample.bodies.len()).step_by(4).collect();
+    sample.quaternions = Arc::clone(&system.quaternions);
     sample.numbers = numbers;
     sample
 }
@@ -189,13 +188,12 @@ impl System {
     /// The events that a run detects: those of the file, and each joint's passing of its limits.
     fn watches(&self, stepper: &MultibodyStepper) -> Vec<(recording::Event, EventFunction<AnyStepper>)> {
         let (system, has_reactions) = (Arc::new(self.clone()), self.has_reactions());
-        let ended = |event: recording::Event, stops| if stops { event.terminal() } else { event };
         let of_file = self.event.iter().map(|event| -> (_, EventFunction<_>) {
             let (quantity, system, stepper) = (event.quantity, Arc::clone(&system), stepper.clone());
             let function = move |now: &Moment<'_, AnyStepper>| {
                 of_any(quantity, now, || sample(&system, &stepper, now, has_reactions))
             };
-            (ended(kind(event.direction), event.stops), Box::new(function))
+            (ended(kind(event), event.stops), Box::new(function))
         });
         let of_joints = self.limited().map(|(number, limits)| -> (_, EventFunction<_>) {
             let (joint, stepper) = (self.joints[number], stepper.clone());
