@@ -15,6 +15,7 @@ use crate::file::parameter::{Parameter, in_value};
 use crate::file::quantity::{Direction, Duration, Inertia, PositiveScalar, Rate, Scalar, Torque};
 use crate::file::start::Attitude;
 use crate::file::tables::Document;
+use crate::file::text::check_name;
 
 /// A law with what it reads, sampled and held.
 #[derive(Clone)]
@@ -282,9 +283,8 @@ impl Wheel {
             return Err((key.span(), advised(&format!("unknown field `{}`, expected one of {known}", key.get_ref()))));
         }
         let name: Option<String> = optional(table, "name")?;
-        let is_plain = |name: &String| !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '_');
-        if let (Some(value), Some(true)) = (table.get("name"), name.as_ref().map(|name| !is_plain(name))) {
-            return Err((value.span(), "the `name` of a wheel has letters, digits and _".to_owned()));
+        if let (Some(value), Some(name)) = (table.get("name"), &name) {
+            check_name("a wheel", name).map_err(|message| (value.span(), message))?;
         }
         let most = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
         Ok(Self {

@@ -25,6 +25,7 @@ use crate::file::pointing::{Pointing, View};
 use crate::file::scene::{Origin, Places, SceneFile};
 use crate::file::schedule::{Pace, equal_steps, fraction};
 use crate::file::tables::{Document, span};
+use crate::file::text::check_name;
 use crate::file::words::in_files;
 
 /// The scene of a document without a sweep and an ensemble.
@@ -302,12 +303,8 @@ fn of_pointing(document: &Document<'_>, view: &View) -> Result<(), SpanMessage> 
     }
     let columns = view.columns();
     let names: Vec<&str> = columns.iter().flat_map(Column::names).collect();
-    let is_plain =
-        |name: &str| !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
     for Pointing { name, .. } in view.pointing.iter() {
-        if !is_plain(name) {
-            return wrong("the `name` of a pointing is that of a column, of letters, digits and _");
-        }
+        check_name("a pointing", name).or_else(|message| wrong(&message))?;
         if names.iter().filter(|other| *other == name).count() > 1 {
             return wrong(&format!("`{name}` is the name of another column"));
         }

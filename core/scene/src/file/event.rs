@@ -8,6 +8,7 @@ use toml::Spanned;
 use crate::file::column::Column;
 use crate::file::mistake::{SpanMessage, advised};
 use crate::file::quantity::{Angle, Any, Energy, Number, PositiveScalar, Rate, Scalar};
+use crate::file::text::check_name;
 
 /// An event to be detected along a run: a quantity passes a value.
 #[derive(Clone, Debug, Deserialize)]
@@ -66,9 +67,9 @@ struct EventTable {
 }
 
 impl TryFrom<EventTable> for Event {
-    type Error = &'static str;
+    type Error = String;
 
-    fn try_from(table: EventTable) -> Result<Self, &'static str> {
+    fn try_from(table: EventTable) -> Result<Self, String> {
         let mut quantities = [
             table.tilt.map(|angle| Quantity::Tilt(angle.value)),
             table.speed.map(|speed| Quantity::Speed(speed.value)),
@@ -85,16 +86,13 @@ impl TryFrom<EventTable> for Event {
         .flatten();
         let (Some(quantity), None) = (quantities.next(), quantities.next()) else {
             return Err("an event has one of `tilt`, `speed`, `energy`, `velocity_x`, `velocity_y`, `velocity_z`, \
-                        `axis_x`, `axis_y`, `axis_z`, or a `column` with a `value`");
+                        `axis_x`, `axis_y`, `axis_z`, or a `column` with a `value`"
+                .to_owned());
         };
         if table.value.is_some() && table.column.is_none() {
-            return Err("a `value` is that of a `column`, as in `column = \"x_2\", value = 0.5`");
+            return Err("a `value` is that of a `column`, as in `column = \"x_2\", value = 0.5`".to_owned());
         }
-        // An event's name is the name of a column.
-        let is_plain = |letter: char| letter.is_alphanumeric() || "_-".contains(letter);
-        if table.name.is_empty() || !table.name.chars().all(is_plain) {
-            return Err("the `name` of an event has letters, digits, - and _ only");
-        }
+        check_name("an event", &table.name)?;
         Ok(Self { name: table.name, quantity, column: table.column, direction: table.direction, stops: table.stop })
     }
 }

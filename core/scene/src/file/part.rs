@@ -13,6 +13,7 @@ use crate::file::mistake::SpanMessage;
 use crate::file::quantity::{self, Density, Length, Mass, PositiveScalar, Speed, Triple};
 use crate::file::shape::{BoxTable, RoundTable, Shape, SphereTable};
 use crate::file::start::Start;
+use crate::file::text::check_name;
 
 #[derive(Clone)]
 pub(crate) struct SystemBody {
@@ -75,11 +76,6 @@ impl TryFrom<Triple<quantity::Inertia>> for PrincipalMoments {
     }
 }
 
-/// Whether a name may be the prefix of columns.
-pub(crate) fn is_plain(name: &str) -> bool {
-    !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter))
-}
-
 const MASSES: &str = "a body has a mass `m`, or a `density` with one of `box`, `cylinder`, `capsule`, `sphere`";
 
 impl BodyTable {
@@ -122,10 +118,7 @@ impl BodyTable {
         let shape = self.shape().map_err(|message| (span.clone(), message.to_owned()))?;
         let mass = self.mass(shape.as_ref());
         let Self { name, kinetic, position, moving, start, .. } = self;
-        // The name of a body is the prefix of its columns.
-        if !is_plain(name.get_ref()) {
-            return Err((name.span(), "the `name` of a body has letters, digits, - and _ only".to_owned()));
-        }
+        check_name("a body", name.get_ref()).map_err(|message| (name.span(), message))?;
         if name.get_ref() == SPACE {
             return Err((name.span(), "`space` is what bodies move in; give the body another name".to_owned()));
         }

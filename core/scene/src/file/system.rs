@@ -17,7 +17,7 @@ use crate::file::event::{Event, Quantity};
 use crate::file::joint::{Joint, JointTable, Limits, Names};
 use crate::file::method::scheme;
 use crate::file::mistake::{Lines, Mistake, SpanMessage, advised};
-use crate::file::part::{Between, BodyTable, SPACE, SystemBody, is_plain};
+use crate::file::part::{Between, BodyTable, SPACE, SystemBody};
 use crate::file::picture::PlanePicture;
 use crate::file::placed::place;
 use crate::file::quantity::{
@@ -27,7 +27,7 @@ use crate::file::scene::Sweep;
 use crate::file::schedule::{equal_steps, fraction};
 use crate::file::sweep;
 use crate::file::tables::Document;
-use crate::file::text::title;
+use crate::file::text::{check_name, title};
 
 /// Several bodies, with joints and springs between them.
 ///
@@ -388,9 +388,7 @@ fn names_of_joints(joints: &[Spanned<JointTable>], bodies: &[&str]) -> Result<Ve
             Some(name) => (name.get_ref().clone(), name.span()),
             None => (format!("joint-{}", number + 1), joint.span()),
         };
-        if !is_plain(&name) {
-            return Err((place, "the `name` of a joint has letters, digits, - and _ only".to_owned()));
-        }
+        check_name("a joint", &name).map_err(|message| (place.clone(), message))?;
         if !taken.insert(name.clone()) {
             let both = if names.contains(&name) { "there are two joints" } else { "a body and a joint are" };
             return Err((place, format!("{both} called `{name}`")));

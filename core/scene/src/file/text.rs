@@ -27,6 +27,12 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
+/// Checks a name that is the prefix of columns, or that of one.
+pub(crate) fn check_name(of: &str, name: &str) -> Result<(), String> {
+    let is_plain = !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter));
+    if is_plain { Ok(()) } else { Err(format!("the `name` of {of} has letters, digits, - and _ only")) }
+}
+
 /// A title in one line with its control characters written out. A terminal would obey them, and SVG doesn't allow them.
 pub(crate) fn title<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
     String::deserialize(deserializer).map(|title| visible(&title).replace('\n', "\\n").replace('\t', "\\t"))
