@@ -282,6 +282,24 @@ fn mistakes_of_laws_and_wheels_have_their_place() {
     }
 }
 
+/// The nadir that a law reads has the length one wherever the planet is, and is its direction: at rest in space, after half a
+/// turn from pericentre to apocentre, the opposite one.
+#[test]
+fn a_law_reads_a_unit_vector_of_the_nadir() {
+    let folder = folder("a_law_reads_a_unit_vector_of_the_nadir");
+    let text = "title = \"Nadir\"\n[body]\nmoments = [1e9, 1e9, 1e9]\n[orbit]\nperiod = 6000\nnormal = [0, 0, 1]\n\
+                eccentricity = 0.6\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 0, 0]\n[run]\nduration = 3010\nstep = \
+                10\n[output]\ncolumns = [\"control\"]\nevery = 1\n[[control]]\ntorque = \"1e-6 * n\"\nadvected = { n = \
+                \"planet\" }\nplanet = \"nadir\"\n";
+    let rows = rows(&folder, text);
+    for (row, direction) in [(&rows[1], -1.0), (&rows[301], 1.0)] {
+        assert!((row[1] * 1e6 - direction).abs() < 1e-5 && row[2].abs() < 1e-10 && row[3].abs() < 1e-13, "{row:?}");
+    }
+    for row in &rows[1..] {
+        assert!((row[1].hypot(row[2]).hypot(row[3]) * 1e6 - 1.0).abs() < 1e-12, "{row:?}");
+    }
+}
+
 /// Laws with times of their own are held each by itself, and added.
 #[test]
 fn several_laws_are_added() {

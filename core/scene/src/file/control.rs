@@ -95,7 +95,8 @@ impl Controller {
         let in_space = |reading: &Reading| match reading {
             Reading::Field(field) => field.at(seen.now),
             Reading::Nadir => {
-                seen.now.orbit.map_or_else(|| Vector3::repeat(f64::NAN), |orbit| towards_mass(orbit, seen.now.time))
+                let direction = |orbit| towards_mass(orbit, seen.now.time).normalize();
+                seen.now.orbit.map_or_else(|| Vector3::repeat(f64::NAN), direction)
             }
         };
         self.readings.iter().map(|reading| seen.attitude.tr_mul(&in_space(reading))).collect()
