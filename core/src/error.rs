@@ -395,8 +395,8 @@ fn unsettled(iterations: u32, residual: f64) -> String {
 
 /// The words for a turn that is too large, and the way out.
 fn beyond_solvable([step, largest, turn]: [f64; 3], body: Option<usize>) -> String {
-    // The largest step is NaN if the lanes have different ones.
-    let is_known = !largest.is_nan();
+    // The largest step is NaN if the lanes have different ones, and zero for an infinite velocity.
+    let is_known = largest.abs() > 0.0;
     let body = body.map_or_else(String::new, |body| format!(" {body} (from zero)"));
     let advice =
         if is_known { format!("take steps of at most {largest:e} s") } else { "take smaller steps".to_owned() };

@@ -87,6 +87,8 @@ errors_say!(step_errors: StepError {
         => ["the body 7 (from zero) would", "2.50e0 rad"];
     BeyondSolvable { step: 0.125, largest: f64::NAN, turn: 2.5, body: Some(7) }
         => ["1.25e-1 s", "the body 7 (from zero) would", "2.50e0 rad, which is too far; take smaller", "or_substeps"];
+    BeyondSolvable { step: 0.125, largest: 0.0, turn: f64::INFINITY, body: None }
+        => ["1.25e-1 s: the body would", "inf rad, which is too far; take smaller steps, or let"];
     BeyondSolvable { step: 0.125, largest: 0.0815, turn: 0.0, body: None }
         => ["at the step 1.25e-1 s; take steps of at most 8.15e-2 s, or let"];
     AngleWithoutDigits { turn: 5e15 } => ["5.00e15 rad", "no digit"];

@@ -278,5 +278,19 @@ fn bodies_by_their_shapes() {
     assert!((place - Vector3::new(-0.107_334, 0.0, -0.488_344)).amax() < 1e-6, "{place}");
     let on_a_ball = point.replace("\"pin\"", "\"ball\"").replace("axes = [[0, 1, 0], [0, 1, 0]]\nrate = -1\n", "");
     let refused = system(&on_a_ball).run().unwrap_err().to_string();
-    assert!(refused.contains("singular"), "{refused}");
+    assert!(refused.contains("joints.toml:3:1: the joints of `a` let this point mass turn on the spot"), "{refused}");
+}
+
+/// Numbers in whose sums no digit is left end a run with one message at the place of their joint, and never with a table of NaN.
+#[test]
+fn numbers_without_digits_have_their_place() {
+    let text = free_pin("rate = 1", "").replacen("[[body]]", "gravity = { g = 9.81, up = [0, 1, 0] }\n[[body]]", 1);
+    assert!(system(&text).run().is_ok());
+    for (from, to, expected) in [
+        ("g = 9.81", "g = 1e300", "the energy is beyond all numbers at t = "),
+        ("[-0.2, 0, 0]", "[-1e300, 0, 0]", "joints.toml:7:1: numbers of this joint, or of its bodies, are so large"),
+    ] {
+        let message = system(&text.replace(from, to)).run().unwrap_err().to_string();
+        assert!(message.contains(expected) && !message.contains("NaN"), "{to}: {message}");
+    }
 }

@@ -77,11 +77,16 @@ impl fmt::Display for Stop {
 /// The failure of a step, in the words of files.
 pub(crate) fn told(cause: &StepError) -> String {
     match *cause {
-        StepError::BeyondSolvable { step, largest, turn, .. } if largest > 0.0 => format!(
+        StepError::BeyondSolvable { step, largest, turn, .. } if largest > 0.0 && turn.is_finite() => format!(
             "a step of {step:e} s has no solution: a body would turn by about {turn:.2} rad, and {:.2} rad is the most from \
              here; take a `step` of at most {largest:e} s",
             turn * (largest / step)
         ),
+        StepError::BeyondSolvable { step, .. } => {
+            format!(
+                "a step of {step:e} s has no solution: a body turns too far in it; take a smaller `step`, or a slower start"
+            )
+        }
         ref cause => cause.to_string(),
     }
 }

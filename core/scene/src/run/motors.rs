@@ -7,7 +7,7 @@ use crate::file::joint::{Joint, Kind, Pose};
 use crate::file::part::Between;
 use crate::file::system::System;
 
-/// The motion of a body. That of space is at rest in the origin.
+/// The motion of a body, or of space, which rests in the origin.
 struct BodyMotion {
     pose: Pose,
     /// Angular velocity in the axes of the body, and velocity in space.

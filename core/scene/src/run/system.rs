@@ -23,6 +23,10 @@ use crate::run::make::{Course, EventFunction, Listeners, Note, Run, Stop, fast_t
 /// The quantity that violates a constraint, for messages.
 const GAP: &str = "lengths in m and cosines of axes together";
 
+/// The message about a joint in whose equations no digit is left.
+const FAR: &str =
+    "numbers of this joint, or of its bodies, are so large or so different that no digit is left; give nearer ones";
+
 fn pose(stepper: &MultibodyStepper, state: &[f64], body: Option<usize>) -> Pose {
     let Some(body) = body else { return (Matrix3::identity(), Vector3::zeros()) };
     let (attitude, place) = stepper.attitude(state, body);
@@ -178,6 +182,10 @@ impl System {
         let has_reactions = self.has_reactions();
         let sample = |now: &Moment<'_, AnyStepper>| sample(self, &stepper, now, has_reactions);
         let mut run = make(&any, state, course, sample, self.watches(&stepper), listeners)?;
+        if let Some(sample) = run.samples().iter().find(|sample| !sample.energy.is_finite()) {
+            let time = short(sample.time);
+            return Err(Stop::Other(format!("the energy is beyond all numbers at t = {time} s; give smaller ones")));
+        }
         let of_springs = of_springs.map(|(spring, why)| (self.places.springs[spring], why));
         let left_out = left_out.into_iter().map(|one| (self.of_joint(one.joint), left_out_of(&one)));
         let notes = left_out.chain(of_springs).chain(self.fast_turns());
@@ -302,6 +310,7 @@ impl System {
                 };
                 (self.of_joint(joint), message)
             }
+            SetupError::RedundantJoint { joint, pivot } if pivot.is_nan() => (self.of_joint(joint), FAR.to_owned()),
             SetupError::RedundantJoint { joint, pivot } => {
                 let message = format!(
                     "the other joints, or its own functions, do a part of what this one is to do (pivot {pivot:e}); leave it out, or make a `pin` a `ball`"
@@ -319,13 +328,33 @@ impl System {
                 let message = format!("parameter `{field}` of the body `{name}` {cause}; give it another value");
                 (self.places.bodies[body], message)
             }
+            SetupError::SingularKinetic { determinant, body } => {
+                // A single body has no number.
+                let body = body.or_else(|| (self.bodies.len() == 1).then_some(0));
+                let known = body.and_then(|body| self.without_velocity(body, determinant));
+                known.unwrap_or_else(|| (self.places.pace, error.to_string()))
+            }
             error => (self.places.pace, error.to_string()),
         }
+    }
+
+    /// The reason why the velocity of a body doesn't follow from its momentum, with its place.
+    fn without_velocity(&self, body: usize, determinant: f64) -> Option<((usize, usize), String)> {
+        let SystemBody { name, J, .. } = self.bodies.get(body)?;
+        if J.is_none() {
+            let message = format!(
+                "the joints of `{name}` let this point mass turn on the spot, and nothing determines how fast: give it `moments`, or a joint that holds its attitude, as a `weld` or a `pin` beside it"
+            );
+            return Some((self.places.bodies[body], message));
+        }
+        let joint = self.joints.iter().position(|joint| joint.bodies.contains(&Some(body)))?;
+        determinant.is_nan().then(|| (self.of_joint(joint), FAR.to_owned()))
     }
 
     /// The reason why a step fails, with its place.
     fn end_of_steps(&self, cause: &StepError) -> ((usize, usize), String) {
         match *cause {
+            StepError::SingularJoint { joint, pivot } if pivot.is_nan() => (self.of_joint(joint), FAR.to_owned()),
             StepError::SingularJoint { joint, pivot } => {
                 let why = format!(
                     "this joint comes to a singular position (pivot {pivot:e}), where its force isn't determined; make a `pin` a `ball`, take a smaller `step`, or another start"
@@ -334,8 +363,13 @@ impl System {
             }
             StepError::UnsolvedBody { body, turn, determinant } if body < self.bodies.len() => {
                 let name = &self.bodies[body].name;
+                let part = if determinant.is_nan() {
+                    "the iteration runs out of all bounds".to_owned()
+                } else {
+                    format!("its part of the Jacobian has the determinant {determinant:e}")
+                };
                 let why = format!(
-                    "no increment of the body `{name}` that continues the identity: it would turn by {turn:.2e} rad, and its part of the Jacobian has the determinant {determinant:e}; take a smaller `step`"
+                    "no increment of the body `{name}` that continues the identity: it would turn by {turn:.2e} rad, and {part}; take a smaller `step`"
                 );
                 (self.places.bodies[body], why)
             }

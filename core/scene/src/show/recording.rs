@@ -151,9 +151,6 @@ impl Recording {
             ]
         };
         let figure = Figure::of(&scene.inertia().unwrap_or_else(Matrix3::identity), arm);
-        let event = |happening: &Happening| {
-            scene.event.get(happening.event).map(|event| (happening.sample.time, event.name.clone()))
-        };
         Self {
             title: scene.title.clone(),
             about: format!("{}, {} steps of {} s{}", scene.sum(), run.steps(), short(run.step()), run.average),
@@ -162,7 +159,7 @@ impl Recording {
             rods: Vec::new(),
             times: collect(&|sample| sample.time),
             charts,
-            events: run.happenings().iter().filter_map(event).collect(),
+            events: named_events(run, scene.events()),
         }
     }
 
@@ -180,8 +177,6 @@ impl Recording {
         });
         let rod = |body: Option<usize>, at: Vector3<f64>| Some((body?, at)).filter(|(_, at)| at.norm() > 0.0);
         let rods = system.joints.iter().flat_map(|joint| [0, 1].map(|side| rod(joint.bodies[side], joint.of.at[side])));
-        let names: Vec<_> = system.events().collect();
-        let event = |happening: &Happening| Some((happening.sample.time, (*names.get(happening.event)?).to_owned()));
         let (title, about) = (system.title.clone(), system.about_run(run));
         Self {
             title,
@@ -191,7 +186,7 @@ impl Recording {
             rods: rods.flatten().collect(),
             times: samples.iter().map(|sample| sample.time).collect(),
             charts: charts_of_system(system, samples),
-            events: run.happenings().iter().filter_map(event).collect(),
+            events: named_events(run, system.events()),
         }
     }
 
@@ -216,6 +211,13 @@ impl System {
     fn about_run(&self, run: &Run) -> String {
         format!("{}, {} steps of {} s", self.sum(), run.steps(), short(run.step()))
     }
+}
+
+/// The events of a run, s, with their names among these.
+fn named_events<'n>(run: &Run, names: impl Iterator<Item = &'n str>) -> Vec<(f64, String)> {
+    let names: Vec<_> = names.collect();
+    let event = |happening: &Happening| Some((happening.sample.time, (*names.get(happening.event)?).to_owned()));
+    run.happenings().iter().filter_map(event).collect()
 }
 
 /// Most curves of a chart of several bodies.
@@ -244,7 +246,8 @@ fn charts_of_system(system: &System, samples: &[Sample]) -> Vec<Chart> {
     charts.push(energy_error(&samples.iter().map(|sample| sample.energy).collect::<Vec<_>>()));
     if !system.joints.is_empty() {
         let gaps = samples.iter().map(|sample| sample.gap).collect();
-        charts.push(Chart::logarithmic("Gaps of joints", "m", vec![("gap".to_owned(), gaps)]));
+        let unit = if system.has_cosines() { "m, 1" } else { "m" };
+        charts.push(Chart::logarithmic("Gaps of joints", unit, vec![("gap".to_owned(), gaps)]));
     }
     charts
 }
