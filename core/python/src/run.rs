@@ -1,6 +1,7 @@
 //! A run that is recorded into columns, with its events, and stopped when Python requests it.
 
 use std::cell::{Cell, RefCell};
+use std::f64::consts::PI;
 use std::time::{Duration, Instant};
 
 use liestep::motion::{AnyMotion, AnyState, AnyStepper, Factor, FactorKind, Integrator, Moment};
@@ -212,7 +213,10 @@ impl Watch {
             (.., Some(entry)) => Quantity::Entry(entry),
             _ if quantity == "energy" => Quantity::Energy,
             _ if quantity == "speed" => Quantity::Speed,
-            _ if quantity == "tilt" && is_rotation => Quantity::Tilt,
+            _ if quantity == "tilt" && is_rotation && (0.0..=PI).contains(&value) => Quantity::Tilt,
+            _ if quantity == "tilt" && is_rotation => {
+                return Err(Failure::Of("SetupError", "a tilt is from 0 to 180 deg".to_owned()));
+            }
             _ => {
                 let own = components().map(|(name, _)| format!("velocity_{name}, momentum_{name}, "));
                 let rest = if is_rotation { "axis_x, axis_y, axis_z, tilt, " } else { "the entries g_12 …, " };
@@ -226,7 +230,7 @@ impl Watch {
             Quantity::Tilt => value.cos() - entry_of(now, 8),
             Quantity::Entry(place) => entry_of(now, place) - value,
             Quantity::Energy => now.energy() - value,
-            Quantity::Speed => now.velocity().iter().map(|part| part * part).sum::<f64>() - value * value,
+            Quantity::Speed => now.velocity().iter().map(|part| part * part).sum::<f64>() - value * value.abs(),
             Quantity::Velocity(place) => now.velocity()[place] - value,
             Quantity::Momentum(place) => now.momentum()[place] - value,
         }))

@@ -1,5 +1,6 @@
 //! Events: the tables `[[event]]`.
 
+use std::f64::consts::PI;
 use std::ops::Range;
 
 use serde::Deserialize;
@@ -89,6 +90,12 @@ impl TryFrom<EventTable> for Event {
                         `axis_x`, `axis_y`, `axis_z`, or a `column` with a `value`"
                 .to_owned());
         };
+        // Others are reached by no axis, and their cosines are.
+        if let Quantity::Tilt(angle) = quantity
+            && !(0.0..=PI).contains(&angle)
+        {
+            return Err("a `tilt` is from 0 to 180 deg".to_owned());
+        }
         if table.value.is_some() && table.column.is_none() {
             return Err("a `value` is that of a `column`, as in `column = \"x_2\", value = 0.5`".to_owned());
         }
