@@ -25,6 +25,12 @@ pub(crate) struct FileRun {
     table: Py<Table>,
 }
 
+/// The size of a unit in another one of the same quantity, as files have them.
+#[pyfunction]
+pub(crate) fn ratio(unit: &str, other: &str) -> Option<f64> {
+    liestep_scene::ratio(unit, other)
+}
+
 /// The text of a body or an effect of the library: what `liestep._library` reads.
 #[pyfunction]
 pub(crate) fn library(name: &str) -> Option<&'static str> {

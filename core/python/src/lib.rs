@@ -80,8 +80,7 @@ impl Derivation {
         self.0.energy.is_some()
     }
 
-    /// For each value that is carried along the number of its parameter, unless it is a configuration, and how many numbers it
-    /// has.
+    /// The number of the parameter of each advected value, none of a configuration, and how many numbers the value has.
     #[getter]
     fn carried(&self) -> Vec<(Option<usize>, usize)> {
         self.0.carried.iter().map(|one| (one.field, one.shape.0 * one.shape.1)).collect()
@@ -242,7 +241,7 @@ mod _native {
     #[pymodule_export]
     use super::{Derivation, Scene, Signal, State, Table, View, order, plan, schemes, share};
     #[pymodule_export]
-    use crate::file::{File, FileRun, library};
+    use crate::file::{File, FileRun, library, ratio};
     #[pymodule_export]
     use crate::picture::{page, picture};
 }

@@ -210,6 +210,14 @@ def test_events_by_functions(top):
     ended = stepper.run(**start, until=5, events={"end": stops})
     assert ended.ended_by == "end" and ended.time[-1] == pytest.approx(0.78)
     assert ended.events["end"].times == pytest.approx([0.777], abs=1e-12)
+    texts = {"deg/s": "velocity_z > 20 deg/s", "rpm": "velocity_z > 3.3333333333333333 rpm", "SI": "velocity_z > 0.3490658503988659"}
+    units = ls.body([1, 2, 3]).stepper(0.01).run(velocity=[0.3, 0.6, 0.2], until=20, events=texts).events
+    assert len(units["SI"]) > 0
+    assert all(units[name].times == pytest.approx(units["SI"].times, abs=1e-9) for name in texts)
+    with pytest.raises(ls.SetupError, match="`tilt` isn't in `kg` but in `rad`"):
+        stepper.run(**start, until=1, events={"wrong": "tilt > 60 kg"})
+    with pytest.raises(ls.SetupError, match="no event"):
+        stepper.run(**start, until=1, events={"wrong": "tilt > 1.2.3"})
     energy = stepper.run(**start, until=1, events={"energy": lambda now: now.energy - 100})
     assert len(energy.events["energy"]) == 0
 

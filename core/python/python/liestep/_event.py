@@ -1,4 +1,4 @@
-"""Events: what is looked for in a run."""
+"""Events of a run, by texts and by functions."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from . import _native
 from ._arrays import number
 from ._state import matrices
 from .errors import SetupError
@@ -15,9 +16,11 @@ if TYPE_CHECKING:
     from ._arrays import Array
 
 _EVENT = re.compile(
-    r"\s*(?P<of>\w+)\s*(?P<sign>[<>]|=)\s*(?P<value>[-+]?[\d.]+(?:e[-+]?\d+)?)\s*(?P<unit>deg|rad|rpm)?\s*(?P<stop>,\s*stop)?\s*"
+    r"\s*(?P<of>\w+)\s*(?P<sign>[<>]|=)\s*(?P<value>[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?)\s*"
+    r"(?P<unit>[^\W\d][^,]*?)?\s*(?P<stop>,\s*stop)?\s*"
 )
-_UNITS = {None: 1.0, "rad": 1.0, "deg": 0.017453292519943295, "rpm": 0.10471975511965977}
+#: SI units of quantities, by the first word of their names.
+_SI = {"tilt": ("rad",), "speed": ("rad/s",), "velocity": ("rad/s", "m/s"), "momentum": ("kg m²/s",), "energy": ("J",)}
 
 
 @dataclass
@@ -66,6 +69,17 @@ def _numbers(function: Callable[[Moment], Any]) -> Callable[..., float]:
     return called
 
 
+def _size(quantity: str, unit: str | None) -> float:
+    """The size of a quantity's unit in that of SI."""
+    if unit is None:
+        return 1.0
+    known = _SI.get(quantity.split("_")[0], ())
+    sizes = [size for one in known if (size := _native.ratio(unit, one)) is not None]
+    if not sizes:
+        raise SetupError(f"`{quantity}` isn't in `{unit}`" + (f" but in `{known[0]}`" if known else ": leave the unit out"))
+    return sizes[0]
+
+
 def watch(text: Any) -> Watch:
     """An event from its text, or from a function of a `Moment`."""
     if callable(text):
@@ -75,4 +89,4 @@ def watch(text: Any) -> Watch:
     if found is None:
         raise SetupError(f'{text!r} is no event: write "tilt > 60 deg", "energy < 3", "velocity_x = 0, stop", or a function')
     direction = {">": 1, "<": -1, "=": 0}[found["sign"]]
-    return Watch(found["of"], None, float(found["value"]) * _UNITS[found["unit"]], direction, bool(found["stop"]))
+    return Watch(found["of"], None, float(found["value"]) * _size(found["of"], found["unit"]), direction, bool(found["stop"]))

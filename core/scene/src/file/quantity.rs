@@ -86,7 +86,8 @@ fn plain(unit: &str) -> String {
 }
 
 /// The size of a unit in another one of the same quantity; none where no quantity has both.
-pub(crate) fn ratio(unit: &str, other: &str) -> Option<f64> {
+#[must_use]
+pub fn ratio(unit: &str, other: &str) -> Option<f64> {
     let [unit, other] = [unit, other].map(plain);
     QUANTITIES.iter().find_map(|units| {
         let size = |unit: &str| units.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size);
