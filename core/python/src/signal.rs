@@ -51,7 +51,7 @@ pub(crate) struct Change {
     function: Option<Py<PyAny>>,
 }
 
-/// A length of one up to this is meant to be one.
+/// Largest deviation of a direction's length from one.
 const NEAR_ONE: f64 = 1e-3;
 
 fn length(vector: &[f64]) -> f64 {

@@ -18,7 +18,7 @@ use crate::scene::Scene;
 pub(crate) enum Source {
     /// A scene with a method and a step.
     Declared(Scene, (Method, f64)),
-    /// A file.
+    /// The scene of a file.
     File(liestep_scene::Scene),
 }
 
@@ -308,7 +308,7 @@ impl State {
         Ok(self.lock()?.clone())
     }
 
-    /// For each factor of the group the rows of its matrices.
+    /// The number of rows of the matrices of each factor.
     #[getter]
     fn factors(&self) -> PyResult<Vec<usize>> {
         Ok(self.source.stepper()?.layout().factors.iter().map(|factor| factor.kind.rows()).collect())

@@ -356,7 +356,7 @@ class Sum:
         return {name: value.signal or _shaped(value.kind, value.numbers) for name, value in values.items()}
 
     def _seen(self, numbers: list[float]) -> dict[str, Any]:
-        """What is carried along by the names of its parameters, from the numbers of all summands."""
+        """The advected values by the names of their parameters, from the numbers of all summands."""
         found: dict[Place, tuple[float, ...]] = {}
         first = 0
         for at, summand in enumerate(self.summands):

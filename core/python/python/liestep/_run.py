@@ -363,7 +363,7 @@ class Scene:
 
     @property
     def text(self) -> str | None:
-        """The text that it was made of; none of a file."""
+        """The text of the scene; none of one that is read from a file."""
         return self._text
 
     def run(self) -> SceneRun:

@@ -12,7 +12,7 @@ from .errors import SceneError, SetupError
 if TYPE_CHECKING:
     from ._arrays import Array
 
-#: More is no rounding of a length of one.
+#: Largest deviation of a direction's length from one.
 NEAR_ONE = 1e-3
 
 
@@ -83,7 +83,7 @@ class Signal:
 
     @property
     def source(self) -> tuple[_native.Signal | None, Callable[[list[float]], list[float]] | None]:
-        """What Rust takes: the signal by its values, or a function of times that returns the numbers of all values."""
+        """The signal as Rust takes it: by its values, or as a function of times that returns the numbers of all values."""
         return (None, self._numbers) if self._native is None else (self._native, None)
 
     def table(self) -> dict[str, Any]:
@@ -98,7 +98,7 @@ class Signal:
         return numbers
 
     def key(self) -> tuple[Any, ...]:
-        """What tells it from others."""
+        """The key that tells this signal from others."""
         times, values, between = self._source
         return self._source if between is None else (times.tobytes(), values.tobytes(), values.shape, between)
 
@@ -208,7 +208,7 @@ def diagonal(moments: Array) -> Array:
 
 
 def reach(signals: Mapping[str, Signal], until: float) -> None:
-    """Looks whether all signals have values from the start to the end of a run."""
+    """Checks that all signals have values from the start to the end of a run."""
     for name, signal in signals.items():
         first, last = signal.ends
         if first > min(0.0, until) or last < max(0.0, until) * (1 - 1e-9):

@@ -13,12 +13,12 @@ if TYPE_CHECKING:
     from ._arrays import Array
 
 
-#: The most steps at once.
+#: Largest number of steps at once.
 MOST = 2**52
 
 
 class Origin(Protocol):
-    """What a state is of: a stepper, or a scene's file."""
+    """The source of a state: a stepper, or a scene's file."""
 
     def _resumed(self, numbers: list[float]) -> _native.State: ...
 
@@ -154,7 +154,7 @@ class State:
 
     @property
     def bodies(self) -> dict[str, BodyState]:
-        """Of several bodies each by its name."""
+        """The bodies by their names; none of one body."""
         attitude, velocity = self.attitude, self.velocity
         return {
             name: BodyState(
@@ -173,7 +173,7 @@ class State:
 
     @property
     def advected(self) -> dict[str, Any]:
-        """What is carried along, as the body sees it, by the names of its values in space.
+        """The advected values as the body sees them, by the names of their values in space.
 
         Examples
         --------

@@ -10,7 +10,7 @@ from ._arrays import floats
 from ._signal import Signal
 from .errors import SceneError
 
-#: Tables in tables beyond it are no scene.
+#: Largest number of tables in each other.
 DEEPEST = 16
 
 

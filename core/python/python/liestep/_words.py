@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-#: Words about programs, and what they are about here.
+#: Words about programs, and those of Python in their place.
 WORDS = [
     ("declare what changes with it by `given(u = field)`, and go on by `step_with`", "pass what changes with it as a `ls.signal`"),
     ("declare it with `advected({} = field)`, where the field holds", 'declare it with `advected={{"{}": "up"}}`, where `up` holds'),
@@ -22,7 +22,7 @@ WORDS = [
     ("and that of `CayleyBody` has", 'and `kinetic="cayley"` has'),
 ]
 
-#: Types of fields, and what has them here; the number is that of the rows.
+#: Types of fields, and the values of Python in their place; the number is that of the rows.
 TYPES = {
     "ContravariantVector": "`ls.contravariant` of {} numbers",
     "ContravariantTensor": "`ls.contravariant` of a matrix of {} rows",

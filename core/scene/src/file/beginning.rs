@@ -22,7 +22,7 @@ pub(crate) struct Beginning {
     pub(crate) velocity: Vec<f64>,
     /// Whether the momentum is in the place of the velocity.
     pub(crate) is_by_momentum: bool,
-    /// Whether it was given relative to the local vertical, and is converted.
+    /// Whether the start is relative to the local vertical in the file; here it is in space.
     is_relative: bool,
 }
 
@@ -81,7 +81,7 @@ impl Beginning {
         Ok(all)
     }
 
-    /// Whether it has the velocity that the file has.
+    /// Whether the velocity is that of the file.
     pub(crate) const fn is_in_space(&self) -> bool {
         !self.is_by_momentum && !self.is_relative
     }

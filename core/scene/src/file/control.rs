@@ -52,16 +52,16 @@ pub(crate) struct Control {
 #[derive(Clone)]
 pub(crate) struct Wheel {
     pub(crate) name: String,
-    /// Body frame.
+    /// Axis, body frame.
     pub(crate) axis: Vector3<f64>,
     /// Moment about the axis, kg m².
     pub(crate) inertia: f64,
     /// Speed relative to the body at the start, rad/s.
     pub(crate) speed: f64,
     pub(crate) motor: Motor,
-    /// N m.
+    /// Largest torque of the motor, N m.
     pub(crate) largest_torque: f64,
-    /// rad/s.
+    /// Largest speed at which the motor drives on, rad/s.
     pub(crate) largest_speed: f64,
     pub(crate) span: Range<usize>,
 }
@@ -77,13 +77,13 @@ pub(crate) enum Motor {
 /// The state that a law reads.
 pub(crate) struct Seen<'a> {
     pub(crate) now: Time<'a>,
-    /// Body to space.
+    /// Attitude, body to space.
     pub(crate) attitude: Matrix3<f64>,
-    /// Body frame, rad/s.
+    /// Angular velocity, body frame, rad/s.
     pub(crate) velocity: Vector3<f64>,
 }
 
-/// Deserialises nothing, as [`take`] removes the tables first.
+/// Empty list of the tables that [`take`] removes first.
 #[allow(clippy::unnecessary_wraps)] // serde requires a `Result`
 pub(crate) fn taken<'de, D: Deserializer<'de>, T>(_: D) -> Result<Vec<T>, D::Error> {
     Ok(Vec::new())
@@ -106,7 +106,7 @@ impl Controller {
         self.readings.len()
     }
 
-    /// Whether it needs an orbit.
+    /// Whether the law follows the orbit.
     fn is_on_orbit(&self) -> bool {
         let follows = |reading: &Reading| match reading {
             Reading::Nadir => true,
@@ -197,7 +197,7 @@ impl Controller {
 /// Keys of all laws.
 const COMMON: [&str; 5] = ["torque", "every", "target", "relative_to", "advected"];
 
-/// The names of what a law reads, and the keys of the vectors in space.
+/// Names of the vectors in space that a law reads, and their keys.
 fn advected(table: &DeTable<'_>) -> Result<Vec<(String, String, Range<usize>)>, SpanMessage> {
     let Some(value) = table.get("advected") else { return Ok(Vec::new()) };
     let wrong = |span| (span, "what a law reads is named as in `advected = { b = \"B\" }`".to_owned());
@@ -306,7 +306,7 @@ impl Wheel {
     }
 }
 
-/// Reads the signal of a value, if it is one.
+/// Reader of the signal in a value; none of another value.
 type ReadSignal<'r> = &'r dyn Fn(&Spanned<DeValue<'_>>) -> Result<Option<Signal>, SpanMessage>;
 
 /// The tables `[[control]]` and `[[wheel]]`, which are removed; `signal` reads a torque over time.
@@ -362,8 +362,8 @@ pub(crate) fn entries(controls: &[Control], wheels: &[Wheel]) -> usize {
     2 * wheels.len() + 3 * controls.len() + 3 * readings + 1
 }
 
-/// Gives laws without a time between samples that of a step, s; refuses times that aren't whole numbers of steps, and laws
-/// along an orbit where the scene has none.
+/// Sets the time between samples of laws without one to that of a step, s; refuses times that aren't whole numbers of steps,
+/// and laws along an orbit where the scene has none.
 pub(crate) fn settle(
     controls: &mut [Control],
     wheels: &mut [Wheel],

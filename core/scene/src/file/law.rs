@@ -63,9 +63,9 @@ pub(crate) fn within(number: f64, [low, high]: [f64; 2]) -> f64 {
 /// A function of a law, by its name, with its kinds.
 #[derive(Clone, Copy)]
 enum Function {
-    /// Of a number.
+    /// A function of a number.
     OfNumber(fn(f64) -> f64),
-    /// Of each component.
+    /// A function of each component.
     OfEach(fn(f64) -> f64),
     OfTwo(fn(f64, f64) -> f64),
     Clamp,
@@ -305,7 +305,7 @@ impl Parser<'_> {
         token
     }
 
-    /// Goes past a sign, if it comes next.
+    /// Whether this sign comes next; it is taken then.
     fn takes(&mut self, sign: char) -> bool {
         let comes = self.tokens.get(self.place) == Some(&Token::Sign(sign));
         self.place += usize::from(comes);

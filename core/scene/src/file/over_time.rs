@@ -222,7 +222,7 @@ impl OverTime {
         if let Change::Signal(signal) = &self.change { signal.ends()[0].max(0.0) } else { 0.0 }
     }
 
-    /// Whether it follows the orbit.
+    /// Whether the parameter follows the orbit.
     pub(crate) const fn is_on_orbit(&self) -> bool {
         !matches!(self.change, Change::Signal(_))
     }

@@ -19,7 +19,7 @@ use crate::file::text::check_name;
 pub(crate) struct SystemBody {
     pub(crate) name: String,
     pub(crate) m: f64,
-    /// About the centre of mass; none of a point mass.
+    /// Inertia about the centre of mass; none of a point mass.
     pub(crate) J: Option<Inertia>,
     /// The shape that the body has in pictures, if it is known.
     pub(crate) shape: Option<Shape>,

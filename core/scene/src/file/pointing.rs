@@ -19,7 +19,7 @@ use crate::file::quantity::Direction;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Pointing {
     pub(crate) name: String,
-    /// Body frame.
+    /// Axis, body frame.
     axis: Direction,
     to: DirectionInTime,
 }

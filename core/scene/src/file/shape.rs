@@ -8,10 +8,10 @@ use crate::file::quantity::{Direction, Length, PositiveScalar, Triple};
 /// A shape with its middle in the centre of mass, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Shape {
-    /// The edges along the body's axes.
+    /// A box by its edges along the body's axes.
     Box(Vector3<f64>),
     Round(Round),
-    /// The radius.
+    /// A ball by its radius.
     Sphere(f64),
 }
 
@@ -32,7 +32,7 @@ pub(crate) struct Round {
 pub(crate) struct RoundTable {
     radius: PositiveScalar<Length>,
     length: PositiveScalar<Length>,
-    /// By default the third of the body's axes.
+    /// Axis, by default the third of the body's.
     axis: Option<Direction>,
 }
 
@@ -77,7 +77,7 @@ impl RoundTable {
 }
 
 impl Shape {
-    /// m³.
+    /// Volume, m³.
     pub(crate) fn volume(&self) -> f64 {
         match self {
             Self::Box(edges) => edges.product(),

@@ -6,21 +6,21 @@ use serde::Deserialize;
 
 /// The mean elements of two lines at their epoch. Angles are in rad, in the frame of the true equator and mean equinox.
 #[derive(Clone, Copy, Deserialize)]
-#[serde(try_from = "Written")]
+#[serde(try_from = "LineText")]
 pub(crate) struct Lines {
     pub(crate) inclination: f64,
     pub(crate) ascending_node: f64,
     pub(crate) eccentricity: f64,
     pub(crate) argument_of_perigee: f64,
     pub(crate) mean_anomaly: f64,
-    /// s.
+    /// Period, s.
     pub(crate) period: f64,
 }
 
 /// A text of two lines, below a title or not, or a list of them.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "a `tle` is a text of two lines, or a list of two texts")]
-enum Written {
+enum LineText {
     Text(String),
     List(Vec<String>),
 }
@@ -28,13 +28,13 @@ enum Written {
 /// Characters of a line; the last is the checksum.
 const LENGTH: usize = 69;
 
-impl TryFrom<Written> for Lines {
+impl TryFrom<LineText> for Lines {
     type Error = String;
 
-    fn try_from(written: Written) -> Result<Self, String> {
+    fn try_from(written: LineText) -> Result<Self, String> {
         let text = match written {
-            Written::Text(text) => text,
-            Written::List(lines) => lines.join("\n"),
+            LineText::Text(text) => text,
+            LineText::List(lines) => lines.join("\n"),
         };
         let lines: Vec<&str> = text.lines().map(str::trim_end).filter(|line| !line.is_empty()).collect();
         let (first, second) = match lines[..] {

@@ -41,7 +41,7 @@ pub(super) struct Joint {
     pub(super) damping: f64,
     /// N m, or N.
     pub(super) friction: f64,
-    /// The ends of its way, rad, or m.
+    /// The ends of the joint's way, rad or m.
     pub(super) limits: Option<[f64; 2]>,
 }
 

@@ -26,7 +26,7 @@ pub(crate) struct Page<'a> {
     pub(crate) about: &'a str,
     /// The body axis whose tip draws the path of a single body.
     pub(crate) axis: &'a Vector3<f64>,
-    /// None on a group without a body.
+    /// Bodies; none on a group without any.
     pub(crate) bodies: &'a [ShownBody],
     /// Lines from the centre of mass of a body, by its number, to points of it.
     pub(crate) rods: &'a [(usize, Vector3<f64>)],
@@ -42,9 +42,9 @@ pub(crate) struct Page<'a> {
 pub(crate) struct ShownBody {
     pub(crate) name: String,
     pub(crate) figure: Figure,
-    /// Body to space.
+    /// Attitudes, body to space.
     pub(crate) attitudes: Vec<UnitQuaternion<f64>>,
-    /// m; none of a body that turns about a point.
+    /// Positions, m; none of a body that turns about a point.
     pub(crate) positions: Vec<Vector3<f64>>,
 }
 
