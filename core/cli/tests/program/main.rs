@@ -2,6 +2,7 @@
 
 mod called;
 mod conventions;
+mod devices;
 mod ensembles;
 mod groups;
 mod import;
@@ -12,6 +13,7 @@ mod mutated;
 mod orbits;
 mod page;
 mod papers;
+mod pointing;
 mod readme;
 mod reference;
 mod runs;

@@ -34,7 +34,7 @@ fn a_torque_has_its_impulse() {
     printed(&folder, &["check", "scene.toml"]);
 }
 
-const ORBIT: &str = "{ period = \"100 min\", normal = [0, 0, 1], eccentricity = 0.1, phase = \"40 deg\" }";
+const ORBIT: &str = "[orbit]\nperiod = \"100 min\"\nnormal = [0, 0, 1]\neccentricity = 0.1\nphase = \"40 deg\"";
 
 fn satellite(terms: &str, steps: u32, method: &str) -> String {
     format!(
@@ -45,7 +45,7 @@ fn satellite(terms: &str, steps: u32, method: &str) -> String {
     )
 }
 
-const GRADIENT: &str = "[gravity_gradient.direction]\norbit = ";
+const GRADIENT: &str = "[gravity_gradient]\ndirection = \"nadir\"\n";
 
 /// A potential of the file's own follows an orbit as the library's does.
 #[test]
@@ -54,7 +54,7 @@ fn own_terms_follow_an_orbit() {
     let own = format!(
         "[lagrangian]\nl_d = \"{{ let after = F.transpose() * w; \
          -0.75 * h * n * n * (w.dot(&(J * w)) + after.dot(&(J * after))) }}\"\nadvected = {{ w = \"dir\" }}\n\
-         n = {:?}\nJ = {{ moments = [100, 250, 300] }}\ndir = {{ orbit = {ORBIT} }}",
+         n = {:?}\nJ = {{ moments = [100, 250, 300] }}\ndir = \"nadir\"\n{ORBIT}",
         std::f64::consts::TAU / 6000.0
     );
     let listed = format!("{GRADIENT}{ORBIT}");

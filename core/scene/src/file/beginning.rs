@@ -9,6 +9,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use crate::file::group::Group;
+use crate::file::kepler::Orbit;
 use crate::file::mistake::{SpanMessage, advised};
 use crate::file::parameter::{in_value, list, matrix};
 use crate::file::quantity::{Angle, Scalar};
@@ -21,6 +22,8 @@ pub(crate) struct Beginning {
     pub(crate) velocity: Vec<f64>,
     /// Whether the momentum is in the place of the velocity.
     pub(crate) is_by_momentum: bool,
+    /// Whether it was given relative to the local vertical, and is converted.
+    is_relative: bool,
 }
 
 /// Nothing: the table is read when the group is known.
@@ -33,16 +36,22 @@ impl<'de> Deserialize<'de> for Beginning {
 type Value<'a> = Spanned<DeValue<'a>>;
 
 const ROTATIONS: [&str; 3] = ["euler", "quaternion", "yaw_pitch_roll"];
+/// The key of the frame that a start is relative to.
+const RELATIVE: &str = "relative_to";
 const ONE_VELOCITY: &str = "a start has one of `velocity` and `momentum`";
 
 impl Beginning {
     /// The start of a table `start` on a group.
-    pub(crate) fn read(value: &Value<'_>, group: &Group) -> Result<Self, SpanMessage> {
+    pub(crate) fn read(value: &Value<'_>, group: &Group, orbit: Option<&Orbit>) -> Result<Self, SpanMessage> {
         let Some(table) = value.get_ref().as_table() else {
             return Err((value.span(), "`start` is a table".to_owned()));
         };
         if group.increments.is_empty() {
-            return Place { table, value, factor: &group.factors[0], group: &group.groups[0] }.start();
+            let place = Place { table, value, factor: &group.factors[0], group: &group.groups[0] };
+            return match table.get(RELATIVE).filter(|_| group.is_rotation()) {
+                Some(frame) => place.relative(frame, orbit),
+                None => place.start(),
+            };
         }
         if let Some((key, _)) = table.iter().find(|(key, _)| !group.increments.iter().any(|own| own == key.get_ref())) {
             return Err((key.span(), unknown(key.get_ref(), group.increments.iter().map(String::as_str))));
@@ -67,6 +76,11 @@ impl Beginning {
             all.is_by_momentum = own.is_by_momentum;
         }
         Ok(all)
+    }
+
+    /// Whether it has the velocity that the file has.
+    pub(crate) const fn is_in_space(&self) -> bool {
+        !self.is_by_momentum && !self.is_relative
     }
 
     /// The state of a stepper at this start.
@@ -113,6 +127,28 @@ struct Place<'t, 'a> {
 }
 
 impl Place<'_, '_> {
+    /// The start of a body relative to the local vertical of an orbit at the time zero.
+    fn relative(&self, frame: &Value<'_>, orbit: Option<&Orbit>) -> Result<Beginning, SpanMessage> {
+        if frame.get_ref().as_str() != Some("local vertical") {
+            return Err((frame.span(), "a start is relative to space, or to the \"local vertical\"".to_owned()));
+        }
+        let orbit = orbit.ok_or_else(|| {
+            (frame.span(), "the local vertical is that of an orbit, and the file has no table `[orbit]`".to_owned())
+        })?;
+        if let Some(momentum) = self.table.get("momentum") {
+            let message = "a start relative to the local vertical has a `velocity`";
+            return Err((momentum.span(), message.to_owned()));
+        }
+        let mut table = self.table.clone();
+        table.remove(RELATIVE);
+        let own = Place { table: &table, ..*self }.start()?;
+        let rotation = *own.rotation().as_matrix();
+        let attitude = orbit.local_vertical(0.0) * rotation;
+        let velocity = Vector3::from_column_slice(&own.velocity) + attitude.tr_mul(&orbit.turning(0.0));
+        let velocity = velocity.as_slice().to_vec();
+        Ok(Beginning { attitude: by_rows(&attitude), velocity, is_by_momentum: false, is_relative: true })
+    }
+
     fn start(&self) -> Result<Beginning, SpanMessage> {
         let is_rotation = self.factor.kind == FactorKind::Rotation;
         if is_rotation && self.table.get("attitude").is_none() {
@@ -139,7 +175,7 @@ impl Place<'_, '_> {
             (None, None) => return Err((self.value.span(), ONE_VELOCITY.to_owned())),
             (Some(_), Some(momentum)) => return Err((momentum.span(), ONE_VELOCITY.to_owned())),
         };
-        Ok(Beginning { attitude, velocity, is_by_momentum })
+        Ok(Beginning { attitude, velocity, is_by_momentum, is_relative: false })
     }
 
     /// The start of a body that turns.
@@ -158,7 +194,7 @@ impl Place<'_, '_> {
             None => velocity.as_slice().to_vec(),
         };
         let attitude = by_rows(SO3::from(attitude).as_matrix());
-        Ok(Beginning { attitude, velocity, is_by_momentum: momentum.is_some() })
+        Ok(Beginning { attitude, velocity, is_by_momentum: momentum.is_some(), is_relative: false })
     }
 
     /// The start of a rotation in a table, to which a velocity of zero may be added.

@@ -88,6 +88,17 @@ impl Column {
         all
     }
 
+    /// The column of numbers in these places of a sample; none without any.
+    pub(crate) fn of_places<'a>(
+        key: &'static str,
+        names: impl Iterator<Item = &'a str>,
+        unit: &'static str,
+        places: Range<usize>,
+    ) -> Option<Self> {
+        let names = names.map(|name| (name.to_owned(), unit)).collect();
+        (!places.is_empty()).then_some(Self { key, names, numbers: Part(places) })
+    }
+
     /// The columns of a scene of several bodies.
     pub(crate) fn of_several_bodies() -> Vec<Self> {
         vec![

@@ -8,18 +8,20 @@ use liestep_derivation::Role;
 use liestep_late::{Declaration, LateError};
 use serde::Deserialize as _;
 use toml::Spanned;
-use toml::de::Deserializer;
+use toml::de::{DeValue, Deserializer};
 
 use crate::file::beginning::Beginning;
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
+use crate::file::control::{self, settle};
 use crate::file::effects::Table as _;
 use crate::file::group::Group;
 use crate::file::lagrangian::{DeclaredTerm, take};
 use crate::file::method::kind;
 use crate::file::mistake::{Mistake, SpanMessage, place_of};
-use crate::file::over_time::{self, OverTime};
+use crate::file::over_time::{self, NO_ORBIT, OverTime};
 use crate::file::picture::{Curve, SpherePicture};
+use crate::file::pointing::{Pointing, View};
 use crate::file::scene::{Origin, Places, SceneFile};
 use crate::file::schedule::{Pace, equal_steps, fraction};
 use crate::file::tables::{Document, span};
@@ -30,6 +32,8 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut rest = document.clone();
     let over_time = over_time::take(&mut rest, path).map_err(located)?;
+    let of_value = |value: &Spanned<DeValue<'_>>| over_time::of_value(value, path);
+    let (mut control, mut wheel) = control::take(&mut rest, &of_value).map_err(located)?;
     let mut on = None;
     let lagrangian = take(&mut rest, Role::Lagrangian, &mut on).map_err(located)?;
     let force = take(&mut rest, Role::Force, &mut on).map_err(located)?;
@@ -44,29 +48,49 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     (file.lagrangian, file.force, file.over_time) = (lagrangian, force, over_time.into());
     add(document, &mut file).map_err(located)?;
     if let Some(start) = document.get_ref().get("start") {
-        file.start = Beginning::read(start, &file.group).map_err(located)?;
-    }
-    let events = document.get_ref().get("event").and_then(|events| events.get_ref().as_array());
-    for (number, event) in file.event.iter_mut().enumerate() {
-        let at = || events.and_then(|events| events.get(number)).map_or(0..0, Spanned::span);
-        event.placed(&file.group, &at).map_err(located)?;
+        file.start = Beginning::read(start, &file.group, file.orbit.as_ref()).map_err(located)?;
     }
     if let Some(steps) = file.run.steps_per_orbit {
         let wrong = |message: String| located((span(document, &["run", "steps_per_orbit"]), message));
         if has(document, "run", "step") || has(document, "run", "accuracy") {
             return Err(wrong("`steps_per_orbit` stands in the place of a `step` or an `accuracy`".to_owned()));
         }
-        let (_, orbit) = file.turning().next().ok_or_else(|| wrong("no effect follows an `orbit`".to_owned()))?;
+        let orbit = file.orbit.ok_or_else(|| wrong("the file has no table `[orbit]`".to_owned()))?;
+        if file.turning().next().is_none() {
+            return Err(wrong("no parameter follows the orbit: give a `step`".to_owned()));
+        }
         let (_, step) = orbit.clock(steps).map_err(|error| wrong(error.to_string()))?;
         file.run.pace = Pace::Step { step, steps: equal_steps(step, file.run.duration).map_err(wrong)? };
+    }
+    if let Pace::Step { step, .. } = file.run.pace {
+        settle(&mut control, &mut wheel, (step, file.orbit.is_some())).map_err(located)?;
+    }
+    (file.control, file.wheel) = (control, wheel);
+    let view = file.view();
+    of_pointing(document, &view).map_err(located)?;
+    let events = document.get_ref().get("event").and_then(|events| events.get_ref().as_array());
+    for (number, event) in file.event.iter_mut().enumerate() {
+        let at = || events.and_then(|events| events.get(number)).map_or(0..0, Spanned::span);
+        event.placed(&view, &at).map_err(located)?;
     }
     at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
     file.over_time.iter().find_map(|one| of_signal(one, &file)).map_or(Ok(()), Err).map_err(located)?;
     if !file.group.is_rotation() && !has(document, "picture", "panels") {
         file.picture = SpherePicture::on_group();
     }
-    let default = ["velocity", "spatial-momentum", "energy", "axis", "quaternion", "attitude"];
-    file.columns = file.output.columns(&Column::of_group(&file.group), &default).map_err(located)?;
+    let default = [
+        "velocity",
+        "spatial-momentum",
+        "energy",
+        "axis",
+        "quaternion",
+        "attitude",
+        "pointing",
+        "roll-pitch-yaw",
+        "wheel-speeds",
+        "control",
+    ];
+    file.columns = file.output.columns(&view.columns(), &default).map_err(located)?;
     let at = |keys: &[&str]| place_of(text, &span(document, keys));
     let keys = ["accuracy", "steps_per_orbit"];
     let pace = keys.into_iter().find(|key| has(document, "run", key)).unwrap_or("step");
@@ -145,7 +169,7 @@ fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
 
 /// Conflicts between keys that are valid by themselves.
 fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
-    let of = [of_pace, of_orbit, of_density, of_method, of_picture];
+    let of = [of_pace, of_orbit, of_devices, of_density, of_method, of_picture];
     of.iter().find_map(|odds| odds(document, file))
 }
 
@@ -200,24 +224,18 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
     if let Some(gradient) = &file.gravity_gradient {
         let is_given = [gradient.GM.is_some(), gradient.r.is_some()];
-        if gradient.orbit().is_none() && is_given != [true; 2] {
+        if gradient.on_orbit().is_none() && is_given != [true; 2] {
             return wrong(&["gravity_gradient"], "beside a direction that is fixed stand `GM` and `r`".to_owned());
         }
-        if gradient.orbit().is_some() && is_given != [false; 2] {
+        if gradient.on_orbit().is_some() && is_given != [false; 2] {
             let key = if is_given[0] { "GM" } else { "r" };
             let message =
                 "the orbit's period says how strong the gradient is, by Kepler's third law: leave `GM` and `r` out";
             return wrong(&["gravity_gradient", key], message.to_owned());
         }
     }
-    let mut all: Vec<_> = file.turning().collect();
-    all.sort_by_key(|(keys, _)| span(document, keys).start);
-    for ((first, one), (keys, other)) in all.iter().zip(all.iter().skip(1)) {
-        let mut pairs = one.said().into_iter().zip(other.said());
-        if let Some(((key, value), _)) = pairs.find(|(one, other)| one != other) {
-            let message = format!("a body goes round one orbit, and `{}` has the {key} {value}", first.join("."));
-            return wrong(&[keys.as_slice(), &[key]].concat(), message);
-        }
+    if let (None, Some(keys)) = (file.orbit, file.turning().next()) {
+        return wrong(&keys, NO_ORBIT.to_owned());
     }
     if let Some(name) = file.changing() {
         if let Pace::Accuracy(_) = file.run.pace {
@@ -258,6 +276,51 @@ fn of_signal(one: &OverTime, file: &SceneFile) -> Option<SpanMessage> {
     let is_short = last < duration * (1.0 - 1e-9);
     is_short.then_some(())?;
     wrong(format!("the run ends at {duration} s, and by lines there is no value after the last of `times`, {last} s"))
+}
+
+/// Mistakes of the tables `[[pointing]]`.
+fn of_pointing(document: &Document<'_>, view: &View) -> Result<(), SpanMessage> {
+    let wrong = |message: &str| Err((span(document, &["pointing"]), message.to_owned()));
+    if view.pointing.is_empty() {
+        return Ok(());
+    }
+    if !view.group.is_rotation() {
+        return wrong("a `pointing` is that of a body on `SO3`: leave it out on this group");
+    }
+    if view.orbit.is_none() && view.pointing.iter().any(Pointing::is_on_orbit) {
+        return wrong("the nadir is that of an orbit, and the file has no table `[orbit]`");
+    }
+    let columns = view.columns();
+    let names: Vec<&str> = columns.iter().flat_map(Column::names).collect();
+    let is_plain =
+        |name: &str| !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || letter == '_');
+    for Pointing { name, .. } in view.pointing.iter() {
+        if !is_plain(name) {
+            return wrong("the `name` of a pointing is that of a column, of letters, digits and _");
+        }
+        if names.iter().filter(|other| *other == name).count() > 1 {
+            return wrong(&format!("`{name}` is the name of another column"));
+        }
+    }
+    Ok(())
+}
+
+/// Conflicts with laws and wheels.
+fn of_devices(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
+    let span_of_law = file.control.first().map(|control| control.span.clone());
+    let at = span_of_law.or_else(|| file.wheel.first().map(|wheel| wheel.span.clone()))?;
+    let is_of_steps = matches!(file.run.pace, Pace::Step { .. }) && !file.has_steps_of_its_own();
+    let beside = [
+        (!file.group.is_rotation() || file.body.is_none(), at, "a `[body]`"),
+        (!is_of_steps, span(document, &["run"]), "a `step`, and neither an accuracy, a density nor steps per orbit"),
+        (
+            !matches!(file.run.method, Scheme::Step),
+            span(document, &["run", "method"]),
+            "the scene's own step: leave `method` out",
+        ),
+    ];
+    let (_, at, what) = beside.into_iter().find(|(is_odd, ..)| *is_odd)?;
+    Some((at, format!("laws and wheels are beside {what}")))
 }
 
 /// Conflicts with a density of steps.

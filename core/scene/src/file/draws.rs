@@ -9,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::file::effects::EFFECTS;
 use crate::file::mistake::SpanMessage;
+use crate::file::quantity::ratio;
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Keys, dotted, ends};
 
@@ -83,11 +84,12 @@ pub(crate) struct Draw {
 const MOST_MEMBERS: u64 = 1_000_000_000;
 
 pub(crate) const DRAW: &str = "a value is drawn by `{ from = …, to = … }`, each between as likely, or by \
-                    `{ mean = …, deviation = … }`, normally: two numbers, or texts with the same unit";
+                    `{ mean = …, deviation = … }`, normally: two numbers, or texts with units of one quantity; a \
+                    deviation may be one of the mean, as \"10 %\"";
 const PARTS: &str = "`ensemble` has `members`, may have `seed`, `every` and `chunk`, and says in `draw` what is drawn";
 /// The tables whose values can be drawn.
 fn drawable() -> impl Iterator<Item = &'static str> {
-    ["body", "lagrangian", "force"].into_iter().chain(EFFECTS.iter().map(|effect| effect.key)).chain(["start"])
+    ["body", "orbit", "lagrangian", "force"].into_iter().chain(EFFECTS.iter().map(|effect| effect.key)).chain(["start"])
 }
 
 impl SceneEnsemble {
@@ -222,10 +224,19 @@ fn drawn(table: &DeTable<'_>, span: &Range<usize>, name: String) -> Result<Draw,
         let (number, unit) = measured(value.get_ref()).ok_or_else(|| wrong(value.span()))?;
         Ok((number, unit, value.span()))
     };
-    let [(first, unit, span), (second, other, behind)] = [number(kind[0])?, number(kind[1])?];
-    if unit != other {
-        return Err(wrong(behind));
-    }
+    let [(first, one, span), (second, other, behind)] = [number(kind[0])?, number(kind[1])?];
+    let is_share = kind[1] == "deviation" && other == "%";
+    let (second, unit) = match (&*one, &*other) {
+        (_, "%") if is_share => (first.abs() * (second / 100.0), one),
+        (one_unit, other_unit) if one_unit == other_unit => (second, one),
+        // Zero has any unit.
+        (_, "") if second == 0.0 => (second, one),
+        ("", _) if first == 0.0 => (second, other),
+        _ => match ratio(&other, &one) {
+            Some(ratio) => (second * ratio, one),
+            None => return Err(wrong(behind)),
+        },
+    };
     let spread = if *kind == DISTRIBUTIONS[0] {
         // The width of the interval has to be finite, too.
         if !(second > first && (second - first).is_finite()) {

@@ -7,7 +7,8 @@ use liestep::mechanics::{Effect, Inertia};
 use liestep_late::numbers;
 use serde::Deserialize;
 
-use crate::file::orbit::{AirInTime, DirectionInTime, FieldInTime, OnOrbit, Orbit, Parameter as _, VectorInTime};
+use crate::file::kepler::Orbit;
+use crate::file::orbit::{AirInTime, DirectionInTime, FieldInTime, Nadir, Parameter as _, Time, VectorInTime};
 use crate::file::quantity;
 use crate::file::quantity::{
     Acceleration, Damping, Direction, Force, GravitationalParameter, Length, MagneticGain, MagneticMoment, Mass,
@@ -16,11 +17,11 @@ use crate::file::quantity::{
 
 /// An effect's parameters in a file.
 pub(crate) trait Table {
-    /// The effect's parameters for a body of this inertia, at a time, s.
-    fn numbers(&self, J: &Inertia, time: f64) -> Vec<f64>;
+    /// The effect's parameters for a body of this inertia, at a time.
+    fn numbers(&self, J: &Inertia, time: Time<'_>) -> Vec<f64>;
 
-    /// The orbit along which the effect varies, and the parameter that has it.
-    fn orbit(&self) -> Option<(&'static str, &Orbit)>;
+    /// The parameter that varies along the orbit.
+    fn on_orbit(&self) -> Option<&'static str>;
 
     /// Sets a number in this key and component, see [`Parameter::put`](crate::file::orbit::Parameter::put).
     fn put(&mut self, place: (&str, usize), number: f64, unit: &str) -> bool;
@@ -43,7 +44,7 @@ macro_rules! effects {
                     let (GM, r) = match (p.direction, p.GM, p.r) {
                         (VectorInTime::Fixed(_), Some(GM), Some(r)) => (GM.value, r.value),
                         // Kepler's third law.
-                        (VectorInTime::Turns(OnOrbit { orbit }), ..) => (orbit.rate() * orbit.rate(), 1.0),
+                        (VectorInTime::Turns(Nadir::Nadir), ..) => (t.orbit.map_or(f64::NAN, Orbit::rate).powi(2), 1.0),
                         // A gravity gradient without these values is refused when the file is read.
                         _ => (f64::NAN, f64::NAN),
                     };
@@ -107,14 +108,14 @@ macro_rules! tables {
             }
 
             impl Table for $table {
-                fn numbers(&self, $J: &Inertia, $t: f64) -> Vec<f64> {
+                fn numbers(&self, $J: &Inertia, $t: Time<'_>) -> Vec<f64> {
                     let $parameters = self;
                     let effect: $effect = $value;
                     numbers(&effect)
                 }
 
-                fn orbit(&self) -> Option<(&'static str, &Orbit)> {
-                    [$(self.$field.orbit().map(|orbit| (stringify!($field), orbit))),+].into_iter().flatten().next()
+                fn on_orbit(&self) -> Option<&'static str> {
+                    [$(self.$field.is_on_orbit().then_some(stringify!($field))),+].into_iter().flatten().next()
                 }
 
                 fn put(&mut self, (key, component): (&str, usize), number: f64, unit: &str) -> bool {

@@ -118,11 +118,7 @@ pub(crate) fn read(
         return Err(located((value.span(), message)));
     }
     for Axis { keys, .. } in &ensemble.axes {
-        let [tables @ .., last] = keys.as_slice() else { continue };
-        if tables.get(2).is_some_and(|key| key.get_ref() == "orbit") && file.turning().nth(1).is_some() {
-            let message = "effects of the file share this orbit, and a draw would change it for one of them alone";
-            return Err(located((last.span(), message.to_owned())));
-        }
+        let [tables @ .., _] = keys.as_slice() else { continue };
         // A table that the file lacks can't be added by a draw.
         let mut here = Some(document.get_ref());
         for key in tables {
@@ -141,7 +137,7 @@ pub(crate) fn read(
     let axes = &ensemble.axes;
     let is_drawn = |name: &str| axes.iter().any(|axis| axis.keys.first().is_some_and(|key| key.get_ref() == name));
     // A drawn Lagrangian, force or orbit affects other tables, too: all of them are read anew.
-    let all = is_drawn("lagrangian") || is_drawn("force") || file.run.steps_per_orbit.is_some();
+    let all = ["lagrangian", "force", "orbit"].iter().any(|name| is_drawn(name)) || file.run.steps_per_orbit.is_some();
     let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
     ensemble.tables = tables.into_inner().into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
     ensemble.like = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));

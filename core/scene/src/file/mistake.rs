@@ -88,7 +88,7 @@ impl Mistake {
 }
 
 /// Words of other programs, each with the name that it stands for here, and advice for where that name is expected.
-const OTHER_WORDS: [(&str, &str, &str); 17] = [
+const OTHER_WORDS: [(&str, &str, &str); 19] = [
     ("hinge", "pin", "a hinge is a `pin`"),
     ("revolute", "pin", "a revolute joint is a `pin`"),
     ("spherical", "ball", "a spherical joint is a `ball`"),
@@ -101,7 +101,9 @@ const OTHER_WORDS: [(&str, &str, &str); 17] = [
     ("world", "space", "the world is `space`"),
     ("ground", "space", "the ground is `space`"),
     ("gravitation", "gravity", "a weight is `gravity`, and a planet's pull that turns a body is `gravity_gradient`"),
-    ("wheel", "rotor", "a wheel in the body is a `rotor`"),
+    ("flywheel", "wheel", "a flywheel in the body is a `wheel`"),
+    ("controller", "control", "a law of a torque is a `control`"),
+    ("law", "control", "a law of a torque is a `control`"),
     ("damping", "drag", "damping against turning is `drag`"),
     ("omega", "velocity", "the angular velocity is `velocity`, in the body"),
     ("mass", "m", "the mass is `m`"),

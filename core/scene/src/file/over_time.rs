@@ -11,8 +11,9 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use crate::file::effects::EFFECTS;
+use crate::file::kepler::Orbit;
 use crate::file::mistake::SpanMessage;
-use crate::file::orbit::{DirectionInTime, FieldInTime, Orbit, Parameter as _};
+use crate::file::orbit::{DipoleField, Nadir, towards_mass};
 use crate::file::parameter::in_value;
 use crate::file::quantity::{Any, Duration, Scalar, in_si};
 use crate::file::tables::Document;
@@ -32,9 +33,12 @@ pub(crate) struct OverTime {
 #[derive(Clone)]
 enum Change {
     Signal(Signal),
-    Direction(DirectionInTime),
-    Field(FieldInTime),
+    Direction(Orbit),
+    Field(Orbit, DipoleField),
 }
+
+/// The message about a parameter that follows an orbit where the scene has none.
+pub(crate) const NO_ORBIT: &str = "this follows the orbit, and the file has no table `[orbit]`";
 
 /// A signal in a file.
 #[derive(Deserialize)]
@@ -63,6 +67,8 @@ const KEYS: &str = "a signal has `times`, `values` and `between`, \"steps\" or \
 /// Replaces parameters over time by their values at the start, and returns them. Files are looked for beside the scene.
 pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverTime>, SpanMessage> {
     let mut all = Vec::new();
+    let orbit = document.get_ref().get("orbit").cloned();
+    let context = (path, orbit.as_ref());
     for (name, tables) in document.get_mut().iter_mut() {
         let name = name.get_ref().to_string();
         let is_own = name == "lagrangian" || name == "force";
@@ -70,11 +76,11 @@ pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverT
             continue;
         }
         match tables.get_mut() {
-            DeValue::Table(table) => of_table((&name, 0, is_own), table, path, &mut all)?,
+            DeValue::Table(table) => of_table((&name, 0, is_own), table, context, &mut all)?,
             DeValue::Array(several) => {
                 for (number, table) in several.iter_mut().enumerate() {
                     if let DeValue::Table(table) = table.get_mut() {
-                        of_table((&name, number, is_own), table, path, &mut all)?;
+                        of_table((&name, number, is_own), table, context, &mut all)?;
                     }
                 }
             }
@@ -87,22 +93,20 @@ pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverT
 fn of_table(
     (name, number, is_own): (&str, usize, bool),
     table: &mut DeTable<'_>,
-    path: &Path,
+    (path, orbit): (&Path, Option<&Spanned<DeValue<'_>>>),
     all: &mut Vec<OverTime>,
 ) -> Result<(), SpanMessage> {
     for (key, value) in table.iter_mut() {
-        let DeValue::Table(inner) = value.get_ref() else { continue };
-        let has = |key: &str| inner.get(key).is_some();
         let source = || ValueDeserializer::from(value.clone());
-        let change = if has("times") || has("csv") {
-            Change::Signal(signal(value, path)?)
-        } else if is_own && has("orbit") {
-            let wrong = |error| in_value(value, &error);
-            if has("equator") {
-                Change::Field(FieldInTime::deserialize(source()).map_err(wrong)?)
-            } else {
-                Change::Direction(DirectionInTime::deserialize(source()).map_err(wrong)?)
-            }
+        // The text of a declaration isn't a parameter.
+        let is_word = Nadir::deserialize(source()).is_ok() && !TEXTS.contains(&key.get_ref().as_ref());
+        let change = if let Some(signal) = of_value(value, path)? {
+            Change::Signal(signal)
+        } else if is_own && is_word {
+            Change::Direction(of_scene(orbit, value)?)
+        } else if is_own && value.get_ref().get("equator").is_some() {
+            let dipole = DipoleField::deserialize(source()).map_err(|error| in_value(value, &error))?;
+            Change::Field(of_scene(orbit, value)?, dipole)
         } else {
             continue;
         };
@@ -118,6 +122,21 @@ fn of_table(
         all.push(over);
     }
     Ok(())
+}
+
+/// Keys of a declaration whose values are texts.
+const TEXTS: [&str; 7] = ["l", "l_d", "work", "group", "discretise", "velocity", "displacement"];
+
+/// The orbit of the scene, for a parameter that follows it.
+fn of_scene(orbit: Option<&Spanned<DeValue<'_>>>, value: &Spanned<DeValue<'_>>) -> Result<Orbit, SpanMessage> {
+    let orbit = orbit.ok_or_else(|| (value.span(), NO_ORBIT.to_owned()))?;
+    Orbit::deserialize(ValueDeserializer::from(orbit.clone())).map_err(|error| in_value(orbit, &error))
+}
+
+/// The signal of a value, if it is one.
+pub(crate) fn of_value(value: &Spanned<DeValue<'_>>, path: &Path) -> Result<Option<Signal>, SpanMessage> {
+    let has = |key: &str| value.get_ref().get(key).is_some();
+    if has("times") || has("csv") { signal(value, path).map(Some) } else { Ok(None) }
 }
 
 fn signal(value: &Spanned<DeValue<'_>>, path: &Path) -> Result<Signal, SpanMessage> {
@@ -203,13 +222,9 @@ impl OverTime {
         if let Change::Signal(signal) = &self.change { signal.ends()[0].max(0.0) } else { 0.0 }
     }
 
-    /// The orbit that it follows.
-    pub(crate) fn orbit(&self) -> Option<&Orbit> {
-        match &self.change {
-            Change::Signal(_) => None,
-            Change::Direction(direction) => direction.orbit(),
-            Change::Field(field) => field.orbit(),
-        }
+    /// Whether it follows the orbit.
+    pub(crate) const fn is_on_orbit(&self) -> bool {
+        !matches!(self.change, Change::Signal(_))
     }
 
     /// The means over a step of this start and length, s; along an orbit the values in its middle.
@@ -225,8 +240,8 @@ impl OverTime {
                 }
                 numbers
             }
-            Change::Direction(direction) => direction.at(middle).as_slice().to_vec(),
-            Change::Field(field) => field.at(middle).as_slice().to_vec(),
+            Change::Direction(orbit) => towards_mass(orbit, middle).as_slice().to_vec(),
+            Change::Field(orbit, dipole) => dipole.at(orbit, middle).as_slice().to_vec(),
         }
     }
 

@@ -29,6 +29,9 @@ macro_rules! quantities {
         }
     )+
 
+        /// The units of each quantity.
+        const QUANTITIES: &[&[(&str, f64)]] = &[$($quantity::UNITS),+];
+
         /// A quantity of any kind, for the parameters of a file's own declarations.
         #[derive(Clone, Copy)]
         pub(crate) struct Any;
@@ -41,6 +44,8 @@ macro_rules! quantities {
 }
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
+/// A slug is the mass that a pound of force accelerates by a foot per second squared: pounds of force, N, times feet, m.
+const SLUG_FOOT: f64 = 4.448_221_615_260_5 * 0.3048;
 /// The largest angle without a unit: a whole turn as typed, rad.
 const TURN: f64 = 6.3;
 
@@ -48,18 +53,18 @@ quantities! {
     Acceleration: "an acceleration" in "m/s²" 1.0;
     Angle: "an angle" up to TURN in "rad" 1.0, "deg" DEGREE, "°" DEGREE;
     Damping: "a damping coefficient" in "N m s" 1.0;
-    Duration: "a time" in "s" 1.0, "ms" 1e-3, "min" 60.0, "h" 3600.0;
-    FluxDensity: "a magnetic flux density" in "T" 1.0, "mT" 1e-3, "µT" 1e-6, "nT" 1e-9;
+    Duration: "a time" in "s" 1.0, "ms" 1e-3, "min" 60.0, "h" 3600.0, "d" 86_400.0;
+    FluxDensity: "a magnetic flux density" in "T" 1.0, "mT" 1e-3, "µT" 1e-6, "nT" 1e-9, "G" 1e-4;
     Energy: "an energy" in "J" 1.0, "mJ" 1e-3, "kJ" 1e3;
     Force: "a force" in "N" 1.0, "mN" 1e-3, "kN" 1e3;
     GravitationalParameter: "a gravitational parameter" in "m³/s²" 1.0, "km³/s²" 1e9;
-    Inertia: "a moment of inertia" in "kg m²" 1.0, "g cm²" 1e-7;
+    Inertia: "a moment of inertia" in "kg m²" 1.0, "kg cm²" 1e-4, "kg mm²" 1e-6, "g cm²" 1e-7, "slug ft²" SLUG_FOOT;
     LinearDamping: "a coefficient of friction" in "N s/m" 1.0, "kg/s" 1.0;
     Length: "a length" in "m" 1.0, "cm" 1e-2, "mm" 1e-3, "km" 1e3;
     MagneticGain: "a magnetic gain" in "A m² s/T" 1.0;
     MagneticMoment: "a magnetic moment" in "A m²" 1.0;
     Mass: "a mass" in "kg" 1.0, "g" 1e-3, "t" 1e3;
-    Momentum: "an angular momentum" in "kg m²/s" 1.0;
+    Momentum: "an angular momentum" in "kg m²/s" 1.0, "N m s" 1.0, "mN m s" 1e-3;
     Number: "a number" in "" 1.0;
     Rate: "an angular velocity" in "rad/s" 1.0, "deg/s" DEGREE, "°/s" DEGREE, "rpm" 6.0 * DEGREE;
     Speed: "a speed" in "m/s" 1.0, "km/h" 1.0 / 3.6, "km/s" 1e3;
@@ -72,6 +77,20 @@ quantities! {
 pub(crate) fn in_si<Q: Quantity>(number: f64, unit: &str) -> Option<f64> {
     let size = if unit.is_empty() { 1.0 } else { size::<Q>(unit)? };
     Some(number * size).filter(|number| number.is_finite())
+}
+
+/// A unit with powers as digits above the line.
+fn plain(unit: &str) -> String {
+    unit.replace("^2", "²").replace("^3", "³")
+}
+
+/// The size of a unit in another one of the same quantity; none where no quantity has both.
+pub(crate) fn ratio(unit: &str, other: &str) -> Option<f64> {
+    let [unit, other] = [unit, other].map(plain);
+    QUANTITIES.iter().find_map(|units| {
+        let size = |unit: &str| units.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size);
+        Some(size(&unit)? / size(&other)?)
+    })
 }
 
 /// The size of a unit in the SI unit.
@@ -116,6 +135,10 @@ impl<'de, Q: Quantity> Deserialize<'de> for PositiveScalar<Q> {
         let Scalar { value, quantity } = Scalar::<Q>::deserialize(source)?;
         if value > 0.0 { Ok(Self { value, quantity }) } else { Err(D::Error::custom("must be above zero")) }
     }
+}
+
+impl<Q> Triple<Q> {
+    pub(crate) const ZERO: Self = Self { value: Vector3::new(0.0, 0.0, 0.0), quantity: PhantomData };
 }
 
 impl<'de, Q: Quantity> Deserialize<'de> for Triple<Q> {
@@ -184,7 +207,7 @@ impl<Q: Quantity> Visitor<'_> for NumberOrText<Q> {
         let value: f64 = number.parse().map_err(|_| {
             E::custom(format!("`{text}` doesn't begin with a number; a quantity is written as in \"30 deg\""))
         })?;
-        let written = unit.trim().replace("^2", "²").replace("^3", "³");
+        let written = plain(unit.trim());
         match size::<Q>(&written) {
             Some(size) => finite(value * size),
             // A quantity of any kind has too many units to list.

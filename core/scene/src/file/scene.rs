@@ -13,16 +13,19 @@ use toml::de::{DeValue, Error, ValueDeserializer};
 use crate::file::beginning::Beginning;
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
+use crate::file::control::{self, Control, Wheel, entries};
 use crate::file::draws::SceneEnsemble;
 use crate::file::effects::{self, EFFECTS, EffectEntry, Table, effects};
 use crate::file::event::Event;
 use crate::file::group::Group;
+use crate::file::kepler::Orbit;
 use crate::file::lagrangian::{DeclaredTerm, taken};
 use crate::file::mistake::SpanMessage;
-use crate::file::orbit::{Orbit, put};
+use crate::file::orbit::{Time, put};
 use crate::file::over_time::OverTime;
 use crate::file::parameter::in_value;
 use crate::file::picture::SpherePicture;
+use crate::file::pointing::{Pointing, View};
 use crate::file::quantity::{Rate, in_si, round, short};
 use crate::file::schedule::{Pace, Schedule};
 use crate::file::text::title;
@@ -57,7 +60,7 @@ macro_rules! scene_file {
             /// of the start.
             pub(crate) fn put(&mut self, [name, key]: [&str; 2], component: usize, number: f64, unit: &str) -> bool {
                 match name {
-                    "start" if key == "velocity" && self.group.is_rotation() && !self.start.is_by_momentum => {
+                    "start" if key == "velocity" && self.group.is_rotation() && self.start.is_in_space() => {
                         put(self.start.velocity.get_mut(component), in_si::<Rate>(number, unit))
                     }
                     $(stringify!($name) => {
@@ -67,13 +70,14 @@ macro_rules! scene_file {
                 }
             }
 
-            /// Replaces the body, the start or an effect by one read from a table; other names are ignored.
+            /// Replaces the body, the orbit, the start or an effect by one read from a table; other names are ignored.
             pub(crate) fn set(&mut self, name: &str, value: &Spanned<DeValue<'_>>) -> Result<(), SpanMessage> {
                 let table = || ValueDeserializer::from(value.clone());
                 let wrong = |error: Error| in_value(value, &error);
                 match name {
                     "body" => self.body = Some(Body::deserialize(table()).map_err(wrong)?),
-                    "start" => self.start = Beginning::read(value, &self.group)?,
+                    "start" => self.start = Beginning::read(value, &self.group, self.orbit.as_ref())?,
+                    "orbit" => self.orbit = Some(Orbit::deserialize(table()).map_err(wrong)?),
                     $(stringify!($name) => self.$name = Some(effects::$table::deserialize(table()).map_err(wrong)?),)+
                     _ => {}
                 }
@@ -90,6 +94,9 @@ effects! { scene_file
     pub(crate) body: Option<Body>,
     pub(crate) start: Beginning,
     pub(crate) run: Schedule,
+    pub(crate) orbit: Option<Orbit>,
+    #[serde(default)]
+    pub(crate) pointing: Vec<Pointing>,
     #[serde(default)]
     pub(crate) picture: SpherePicture,
     #[serde(default)]
@@ -100,13 +107,17 @@ effects! { scene_file
     pub(crate) lagrangian: Vec<DeclaredTerm>,
     #[serde(default, deserialize_with = "taken")]
     pub(crate) force: Vec<DeclaredTerm>,
+    #[serde(default, deserialize_with = "control::taken")]
+    pub(crate) control: Vec<Control>,
+    #[serde(default, deserialize_with = "control::taken")]
+    pub(crate) wheel: Vec<Wheel>,
     /// The group of the scene.
     #[serde(skip)]
     pub(crate) group: Group,
     /// The sum of all terms where the file has the kinetic energy itself.
     #[serde(skip)]
     pub(crate) sum: Option<&'static Declaration>,
-    /// The parameters that change with time, but for those along orbits that are the library's.
+    /// The parameters that change with time, but for those of the library's effects along the orbit.
     #[serde(skip)]
     pub(crate) over_time: Arc<[OverTime]>,
     #[serde(skip)]
@@ -233,7 +244,12 @@ impl SceneFile {
         let own = self.lagrangian.iter().map(|_| "a Lagrangian of its own".to_owned());
         let effects = self.effects().map(|(effect, _)| effect.name(" "));
         let force = self.force.iter().map(|_| "a force of its own".to_owned());
-        body.chain(own).chain(effects).chain(force).collect::<Vec<_>>().join(" + ")
+        let control = self.control.iter().map(|_| "a law".to_owned());
+        let wheels = (!self.wheel.is_empty()).then(|| match self.wheel.len() {
+            1 => "a wheel".to_owned(),
+            count => format!("{count} wheels"),
+        });
+        body.chain(own).chain(effects).chain(force).chain(control).chain(wheels).collect::<Vec<_>>().join(" + ")
     }
 
     /// The name of the first force.
@@ -242,18 +258,37 @@ impl SceneFile {
         listed.or_else(|| self.force.first().map(|_| "`force`".to_owned()))
     }
 
-    /// The terms that vary along an orbit: the keys that lead to their orbits, and the orbits.
-    pub(crate) fn turning(&self) -> impl Iterator<Item = ([&str; 3], &Orbit)> {
-        let own = self.over_time.iter().filter_map(|one| Some(([&*one.table, &*one.key, "orbit"], one.orbit()?)));
-        let listed = self.effects();
-        let listed =
-            listed.filter_map(|(effect, table)| table.orbit().map(|(key, orbit)| ([effect.key, key, "orbit"], orbit)));
-        listed.chain(own)
+    /// The parameters that follow the orbit: their tables and keys.
+    pub(crate) fn turning(&self) -> impl Iterator<Item = [&str; 2]> {
+        let own = self.over_time.iter().filter(|one| one.is_on_orbit()).map(|one| [&*one.table, &*one.key]);
+        self.effects().filter_map(|(effect, table)| Some([effect.key, table.on_orbit()?])).chain(own)
+    }
+
+    /// Whether laws or wheels turn the body.
+    pub(crate) fn has_devices(&self) -> bool {
+        !self.control.is_empty() || !self.wheel.is_empty()
+    }
+
+    /// The numbers that a sample has.
+    pub(crate) fn view(&self) -> View {
+        View {
+            group: self.group.clone(),
+            orbit: self.orbit,
+            pointing: self.pointing.clone().into(),
+            wheels: self.wheel.clone().into(),
+            has_control: !self.control.is_empty(),
+            memory: entries(&self.control, &self.wheel),
+        }
+    }
+
+    /// A time, s, with the orbit.
+    pub(crate) const fn at(&self, time: f64) -> Time<'_> {
+        Time { time, orbit: self.orbit.as_ref() }
     }
 
     /// The first term that changes with time, by its table; none in a scene without any.
     pub(crate) fn changing(&self) -> Option<String> {
-        let turning = self.turning().next().map(|([effect, ..], _)| effect.replace('_', " "));
+        let turning = self.turning().next().map(|[effect, _]| effect.replace('_', " "));
         turning.or_else(|| self.over_time.first().map(|one| one.table.replace('_', " ")))
     }
 

@@ -6,6 +6,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
+use crate::file::euler::{Angles, Sequence};
 use crate::file::key::refuse;
 use crate::file::quantity::{Angle, Number, Rate, Scalar, Triple};
 
@@ -19,9 +20,9 @@ pub(crate) struct Start {
 #[derive(Clone, Copy, Deserialize)]
 #[serde(field_identifier, rename_all = "snake_case")]
 enum Key {
-    /// Precession, nutation and spin: the attitude `R_z(φ) R_x(θ) R_z(ψ)`.
+    /// Precession, nutation and spin: the attitude `R_z(φ) R_x(θ) R_z(ψ)`; or the angles of a sequence.
     Euler,
-    /// Components `[w, x, y, z]`, or a table of them; normalised.
+    /// Components `[w, x, y, z]`, or a table of them or of their list by its order; normalised.
     Quaternion,
     /// `R_z(yaw) R_y(pitch) R_x(roll)`.
     YawPitchRoll,
@@ -37,7 +38,7 @@ enum Key {
 #[derive(Clone, Copy, Deserialize)]
 #[serde(try_from = "AttitudeTable")]
 pub(crate) enum Attitude {
-    Euler(Vector3<f64>),
+    Euler(Angles),
     /// An attitude by a quaternion, or by yaw, pitch and roll.
     Other(UnitQuaternion<f64>),
 }
@@ -45,15 +46,14 @@ pub(crate) enum Attitude {
 impl Attitude {
     pub(crate) fn rotation(&self) -> UnitQuaternion<f64> {
         match self {
-            Self::Euler(angles) => from_euler(angles),
+            Self::Euler(angles) => angles.attitude(),
             Self::Other(attitude) => *attitude,
         }
     }
 
     /// The attitude `R_z(yaw) R_y(pitch) R_x(roll)`.
     fn by_yaw_pitch_roll(angles: &Vector3<f64>) -> Self {
-        // The constructor takes the angles about x, y and z.
-        Self::Other(UnitQuaternion::from_euler_angles(angles.z, angles.y, angles.x))
+        Self::Other(Angles { sequence: Sequence::ZYX, angles: *angles }.attitude())
     }
 }
 
@@ -61,7 +61,7 @@ impl Attitude {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct AttitudeTable {
-    euler: Option<Triple<Angle>>,
+    euler: Option<Angles>,
     quaternion: Option<Components>,
     yaw_pitch_roll: Option<Triple<Angle>>,
     rpy: Option<Triple<Angle>>,
@@ -72,7 +72,7 @@ impl TryFrom<AttitudeTable> for Attitude {
 
     fn try_from(table: AttitudeTable) -> Result<Self, Self::Error> {
         match (table.euler, table.quaternion, table.yaw_pitch_roll, table.rpy) {
-            (Some(angles), None, None, None) => Ok(Self::Euler(angles.value)),
+            (Some(angles), None, None, None) => Ok(Self::Euler(angles)),
             (None, Some(components), None, None) => Ok(Self::Other(components.0)),
             (None, None, Some(angles), None) => Ok(Self::by_yaw_pitch_roll(&angles.value)),
             (None, None, None, Some(angles)) => Ok(Self::by_yaw_pitch_roll(&reversed(&angles.value))),
@@ -121,7 +121,7 @@ impl<'de> Visitor<'de> for StartTable {
                 (Key::Velocity | Key::EulerRates, _, Some(_)) => return refuse(&mut table, VELOCITY),
                 (Key::Quaternion | Key::YawPitchRoll | Key::Rpy, _, Some(Velocity::EulerRates(_)))
                 | (Key::EulerRates, Some(Attitude::Other(_)), _) => return refuse(&mut table, RATES),
-                (Key::Euler, ..) => attitude = Some(Attitude::Euler(table.next_value::<Triple<Angle>>()?.value)),
+                (Key::Euler, ..) => attitude = Some(Attitude::Euler(table.next_value()?)),
                 (Key::Quaternion, ..) => attitude = Some(Attitude::Other(table.next_value::<Components>()?.0)),
                 (Key::YawPitchRoll, ..) => {
                     attitude = Some(Attitude::by_yaw_pitch_roll(&table.next_value::<Triple<Angle>>()?.value));
@@ -139,7 +139,7 @@ impl<'de> Visitor<'de> for StartTable {
         let attitude = attitude.ok_or_else(|| M::Error::custom(ATTITUDE))?;
         let velocity = match (velocity.ok_or_else(|| M::Error::custom(VELOCITY))?, attitude) {
             (Velocity::Body(velocity), _) => velocity,
-            (Velocity::EulerRates(rates), Attitude::Euler(angles)) => body_velocity(&angles, &rates),
+            (Velocity::EulerRates(rates), Attitude::Euler(angles)) => angles.velocity(&rates),
             (Velocity::EulerRates(_), Attitude::Other(_)) => return Err(M::Error::custom(RATES)),
         };
         Ok(Start { attitude: attitude.rotation(), velocity })
@@ -151,15 +151,16 @@ impl<'de> Visitor<'de> for StartTable {
 #[serde(try_from = "QuaternionValue")]
 struct Components(UnitQuaternion<f64>);
 
-/// Components in the order w, x, y, z, or by their names.
+/// Components in the order w, x, y, z, by their names, or in an order that is named.
 #[derive(Deserialize)]
 #[serde(
     untagged,
-    expecting = "a quaternion is `[w, x, y, z]` or `{ w = …, x = …, y = …, z = … }`, four finite numbers"
+    expecting = "a quaternion is `[w, x, y, z]`, `{ w = …, x = …, y = …, z = … }` or `{ xyzw = […] }`, four finite numbers"
 )]
 enum QuaternionValue {
     List(Vec<Scalar<Number>>),
     Table(ComponentTable),
+    Ordered(OrderedTable),
 }
 
 #[derive(Deserialize)]
@@ -171,9 +172,17 @@ struct ComponentTable {
     z: Scalar<Number>,
 }
 
+/// A list whose order is its key.
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum OrderedTable {
+    Wxyz([Scalar<Number>; 4]),
+    Xyzw([Scalar<Number>; 4]),
+}
+
 /// The identity of programs that write the scalar part last; here it is half a turn.
-const SCALAR_LAST: &str = "`quaternion` begins with w, so this is half a turn about z: write [1, 0, 0, 0] for no turn, \
-                           or { w = 0, x = 0, y = 0, z = 1 } for that one";
+const SCALAR_LAST: &str = "`quaternion` begins with w, so this is half a turn about z: write [1, 0, 0, 0] or \
+                           { xyzw = [0, 0, 0, 1] } for no turn, and { w = 0, x = 0, y = 0, z = 1 } for that one";
 
 impl TryFrom<QuaternionValue> for Components {
     type Error = String;
@@ -189,7 +198,10 @@ impl TryFrom<QuaternionValue> for Components {
                     return Err(format!("`quaternion` has the four components w, x, y, z, found {}", other.len()));
                 }
             },
-            QuaternionValue::Table(ComponentTable { w, x, y, z }) => [w, x, y, z],
+            QuaternionValue::Table(ComponentTable { w, x, y, z })
+            | QuaternionValue::Ordered(OrderedTable::Wxyz([w, x, y, z]) | OrderedTable::Xyzw([x, y, z, w])) => {
+                [w, x, y, z]
+            }
         };
         // Divided by the largest component first, as squares may overflow or underflow.
         let quaternion = Quaternion::new(w.value, x.value, y.value, z.value);
@@ -197,17 +209,4 @@ impl TryFrom<QuaternionValue> for Components {
         let unit = UnitQuaternion::try_new(scaled, 0.5).filter(|unit| unit.coords.iter().all(|x| x.is_finite()));
         unit.map(Self).ok_or_else(|| "`quaternion` can't be zero".to_owned())
     }
-}
-
-fn from_euler(angles: &Vector3<f64>) -> UnitQuaternion<f64> {
-    let about_z = |angle| UnitQuaternion::from_axis_angle(&Vector3::z_axis(), angle);
-    about_z(angles.x) * UnitQuaternion::from_axis_angle(&Vector3::x_axis(), angles.y) * about_z(angles.z)
-}
-
-/// The angular velocity `Ω = (RᵀR')^∨` of `R = R_z(φ) R_x(θ) R_z(ψ)`.
-fn body_velocity(angles: &Vector3<f64>, rates: &Vector3<f64>) -> Vector3<f64> {
-    let ((sin_tilt, cos_tilt), (sin_spin, cos_spin)) = (angles.y.sin_cos(), angles.z.sin_cos());
-    let along_nodes = Vector3::new(cos_spin, -sin_spin, 0.0);
-    let vertical = Vector3::new(sin_tilt * sin_spin, sin_tilt * cos_spin, cos_tilt);
-    vertical * rates.x + along_nodes * rates.y + Vector3::z() * rates.z
 }

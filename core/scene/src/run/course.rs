@@ -8,7 +8,7 @@ use liestep::{SO3, recording};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::file::event::{Direction, Event, Quantity};
-use crate::file::group::Group;
+use crate::file::pointing::View;
 use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
 use crate::run::make::{Course, EventFunction};
@@ -23,6 +23,9 @@ pub trait BodyIntegrator: Integrator<Scalar = f64> {
 
     /// The angular momentum, body frame, kg m²/s.
     fn momentum(motion: &Self::Motion) -> Vector3<f64>;
+
+    /// All numbers of the state.
+    fn numbers(motion: &Self::Motion) -> &[f64];
 
     /// The angular velocity, body frame, rad/s.
     fn rate(velocity: Self::Velocity) -> Vector3<f64>;
@@ -40,6 +43,10 @@ impl BodyIntegrator for AnyStepper {
         Vector3::from_column_slice(motion.momentum())
     }
 
+    fn numbers(motion: &AnyMotion) -> &[f64] {
+        motion.numbers()
+    }
+
     fn rate(velocity: Vec<f64>) -> Vector3<f64> {
         Vector3::from_column_slice(&velocity)
     }
@@ -49,8 +56,9 @@ impl BodyIntegrator for AnyStepper {
     }
 }
 
-/// The sample of a scene on this group at this moment.
-pub(crate) fn sample<I: BodyIntegrator>(group: &Group, now: &Moment<'_, I>) -> Sample {
+/// The sample of a scene with these numbers at this moment.
+pub(crate) fn sample<I: BodyIntegrator>(view: &View, now: &Moment<'_, I>) -> Sample {
+    let group = &view.group;
     let (time, energy, gap, momentum) = (now.time(), now.energy(), 0.0, nalgebra::zero());
     let quaternions = Arc::clone(&group.quaternions);
     if group.is_rotation() {
@@ -59,7 +67,8 @@ pub(crate) fn sample<I: BodyIntegrator>(group: &Group, now: &Moment<'_, I>) -> S
         let vectors = [body.velocity, body.momentum, angular_momentum];
         let vectors = vectors.iter().flat_map(Vector3::as_slice);
         let ends = [energy, body.attitude.defect()];
-        let numbers = body.quaternion.iter().chain(vectors).chain(&ends).copied().collect();
+        let seen = view.numbers((&body.matrix(), &body.velocity), (time, I::numbers(now)));
+        let numbers = body.quaternion.iter().chain(vectors).chain(&ends).chain(&seen).copied().collect();
         return Sample { time, energy, momentum, angular_momentum, gap, bodies: vec![body], numbers, quaternions };
     }
     let integrator = now.integrator();
@@ -119,9 +128,9 @@ fn function<I: BodyIntegrator>(
     quantity: Quantity,
     file: &SceneFile,
 ) -> impl Fn(&Moment<'_, I>) -> f64 + Send + Sync + use<I> + 'static {
-    let (axis, group) = (file.picture.axis.0, file.group.clone());
+    let (axis, view) = (file.picture.axis.0, file.view());
     move |now| match quantity {
-        Quantity::Column(place, value) => sample(&group, now).numbers[place] - value,
+        Quantity::Column(place, value) => sample(&view, now).numbers[place] - value,
         // The cosine is smooth at the vertical, unlike the angle.
         Quantity::Tilt(angle) => angle.cos() - (I::attitude(now).as_matrix() * axis).z,
         Quantity::Speed(speed) => I::rate(now.velocity()).norm_squared() - speed * speed,

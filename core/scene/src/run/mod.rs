@@ -3,6 +3,8 @@
 pub(crate) mod bodies;
 pub(crate) mod choose;
 pub(crate) mod course;
+pub(crate) mod data;
+pub(crate) mod devices;
 mod ends;
 pub(crate) mod make;
 mod motors;

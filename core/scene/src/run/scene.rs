@@ -11,12 +11,14 @@ use crate::file::body::Kinetic;
 use crate::file::column::Column;
 use crate::file::event::Event;
 use crate::file::mistake::Mistake;
+use crate::file::pointing::at_the_end;
 use crate::file::quantity::short;
 use crate::file::sample::Sample;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::schedule::Pace;
-use crate::run::choose::{self, Whole};
+use crate::run::choose;
 use crate::run::course::{BodyIntegrator, MemberStart, sample};
+use crate::run::data::Whole;
 use crate::run::make::{Listeners, Run, Stop, fast_turn};
 
 impl SceneFile {
@@ -110,7 +112,7 @@ impl SceneFile {
     /// The numbers of these columns at a moment, one after the other. The sign of a quaternion is arbitrary.
     #[must_use]
     pub fn numbers<I: BodyIntegrator>(&self, columns: &[Column], now: &Moment<'_, I>) -> Vec<f64> {
-        let now = sample(&self.group, now);
+        let now = sample(&self.view(), now);
         Column::row(columns, &now, &now)
     }
 
@@ -207,7 +209,9 @@ impl SceneFile {
         let norm = |sample: &Sample| sample.numbers[self.group.in_space()].iter().map(|part| part * part).sum::<f64>();
         let ends = run.summary(&self.title, &self.sum(), self.group.unit_of_energy(), |first, last| {
             let [before, after] = [first, last].map(|sample| short(norm(sample).sqrt()));
-            format!(", momentum {before} → {after}{unit}{events}")
+            let body = last.bodies.first().map(|body| (body.quaternion, body.velocity));
+            let end = body.map(|body| at_the_end(&self.view(), body, &last.numbers)).unwrap_or_default();
+            format!(", momentum {before} → {after}{unit}{end}{events}")
         });
         let choice = run.choice.as_ref().map(|choice| {
             let (error, accuracy, method) = (choice.error, choice.accuracy.tolerance, choice.chosen().scheme);

@@ -4,7 +4,8 @@ use liestep::mechanics::Inertia;
 use liestep::with::Scheme;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::file::orbit::{OnOrbit, VectorInTime};
+use crate::file::kepler::Orbit;
+use crate::file::orbit::VectorInTime;
 use crate::file::quantity::{round, short};
 use crate::file::scene::SceneFile;
 use crate::file::schedule::Pace;
@@ -66,12 +67,13 @@ impl SceneFile {
         let gravity = self
             .gravity
             .map(|field| ("gravity", pulled(field.rho.value * (field.m.value * field.g.value), field.up.0)));
-        let dipole =
-            self.dipole.map(|dipole| ("the dipole's field", pulled(dipole.moment.value, dipole.field.at(0.0))));
+        let dipole = self
+            .dipole
+            .map(|dipole| ("the dipole's field", pulled(dipole.moment.value, dipole.field.at(self.at(0.0)))));
         let gradient = self.gravity_gradient.map(|gradient| {
             let strength = match (gradient.GM, gradient.r, gradient.direction) {
                 (Some(GM), Some(r), _) => GM.value / r.value.powi(3),
-                (.., VectorInTime::Turns(OnOrbit { orbit })) => orbit.rate() * orbit.rate(),
+                (.., VectorInTime::Turns(_)) => self.orbit.as_ref().map_or(0.0, Orbit::rate).powi(2),
                 _ => 0.0,
             };
             let mut moments: [f64; 3] = J.principal_moments().into();

@@ -1,0 +1,300 @@
+//! Laws and wheels, against integrations and formulas typed here.
+
+use std::fs;
+
+use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
+
+use crate::called::{called, folder, printed, rows};
+
+/// Speeds of wheels, kg m² of each, axes, and torques of three wheels.
+const MOMENTS: [f64; 3] = [0.02, 0.03, 0.05];
+const SPEEDS: [f64; 3] = [100.0, -40.0, 10.0];
+const TORQUES: [f64; 3] = [0.01, 0.02, -0.03];
+
+fn axes() -> [Vector3<f64>; 3] {
+    [Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 0.6, 0.8), Vector3::new(0.36, 0.48, 0.8)]
+}
+
+fn three_wheels(step: f64) -> String {
+    let wheel = |at: usize| {
+        format!(
+            "[[wheel]]\naxis = {:?}\ninertia = {}\nspeed = {:?}\ntorque = {:?}\n",
+            axes()[at].as_slice(),
+            MOMENTS[at],
+            SPEEDS[at],
+            TORQUES[at]
+        )
+    };
+    format!(
+        "title = \"Three wheels\"\n[body]\nJ = [[2, 0.1, -0.2], [0.1, 3, 0.3], [-0.2, 0.3, 4]]\nkinetic = \"geodesic\"\n\
+         [start]\nquaternion = [0.8, 0.1, -0.5, 0.3]\nvelocity = [0.3, -0.2, 0.5]\n[run]\nduration = 20\nstep = {step:?}\n\
+         [output]\ncolumns = [\"quaternion\", \"velocity\", \"spatial-momentum\", \"wheel-speeds\"]\nevery = 1\n{}",
+        (0..3).map(wheel).collect::<String>()
+    )
+}
+
+/// Euler's equations with the momenta of wheels: `J Ω' = −Ω × (J Ω + Σ s a) − Σ u a`, `s' = u`, by Runge–Kutta.
+fn integrated() -> ([f64; 4], [f64; 3], [f64; 3]) {
+    let J = Matrix3::new(2.0, 0.1, -0.2, 0.1, 3.0, 0.3, -0.2, 0.3, 4.0);
+    let inverse = J.try_inverse().unwrap();
+    let pushed: Vector3<f64> = axes().iter().zip(TORQUES).map(|(axis, torque)| axis * torque).sum();
+    let start = Vector3::new(0.3, -0.2, 0.5);
+    let spins: Vec<f64> = (0..3).map(|at| MOMENTS[at] * (SPEEDS[at] + axes()[at].dot(&start))).collect();
+    let f = |y: &SVector<f64, 10>| {
+        let q = Quaternion::new(y[0], y[1], y[2], y[3]);
+        let turn = Vector3::new(y[4], y[5], y[6]);
+        let spin: Vector3<f64> = (0..3).map(|at| axes()[at] * y[7 + at]).sum();
+        let spun = inverse * (-turn.cross(&(J * turn + spin)) - pushed);
+        let q = q * Quaternion::from_imag(turn) * 0.5;
+        SVector::from_iterator([q.w, q.i, q.j, q.k].into_iter().chain(spun.iter().copied()).chain(TORQUES))
+    };
+    let q = UnitQuaternion::new_normalize(Quaternion::new(0.8, 0.1, -0.5, 0.3));
+    let mut y: SVector<f64, 10> =
+        SVector::from_iterator([q.w, q.i, q.j, q.k].into_iter().chain(start.iter().copied()).chain(spins));
+    let h = 20.0 / 40_000.0;
+    for _ in 0..40_000 {
+        let a = f(&y);
+        let b = f(&(y + a * (0.5 * h)));
+        let c = f(&(y + b * (0.5 * h)));
+        let d = f(&(y + c * h));
+        y += (a + (b + c) * 2.0 + d) * (h / 6.0);
+    }
+    let turn = Vector3::new(y[4], y[5], y[6]);
+    let speeds = [0, 1, 2].map(|at| y[7 + at] / MOMENTS[at] - axes()[at].dot(&turn));
+    ([y[0], y[1], y[2], y[3]], [y[4], y[5], y[6]], speeds)
+}
+
+#[test]
+fn three_wheels_exchange_momentum_with_the_body() {
+    let folder = folder("three_wheels_exchange_momentum_with_the_body");
+    let (q, turn, speeds) = integrated();
+    let error = |step: f64| {
+        let rows = rows(&folder, &three_wheels(step));
+        let first = Vector3::new(rows[0][8], rows[0][9], rows[0][10]);
+        for row in &rows {
+            // The momentum in space of body and wheels, to rounding.
+            let off = (Vector3::new(row[8], row[9], row[10]) - first).norm() / first.norm();
+            assert!(off < 1e-13, "{off:e}");
+        }
+        let end = &rows[rows.len() - 1];
+        let own = UnitQuaternion::new_normalize(Quaternion::new(end[1], end[2], end[3], end[4]));
+        let turned = own.angle_to(&UnitQuaternion::new_normalize(Quaternion::new(q[0], q[1], q[2], q[3])));
+        let apart = |from: usize, values: [f64; 3]| {
+            values.iter().enumerate().map(|(at, value)| (end[from + at] - value).abs()).fold(0.0, f64::max)
+        };
+        [turned, apart(5, turn), apart(11, speeds)]
+    };
+    let [coarse, fine] = [error(0.02), error(0.01)];
+    for (coarse, fine) in coarse.iter().zip(fine) {
+        assert!(fine < 1e-3 && (3.8..4.2).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
+    }
+}
+
+/// A torque above the largest is cut, and a wheel at its largest speed isn't driven on.
+#[test]
+fn wheels_have_limits() {
+    let folder = folder("wheels_have_limits");
+    let text = "title = \"A wheel\"\n[body]\nmoments = [1, 1, 1]\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 0, 0]\n[run]\n\
+                duration = 10\nstep = 0.1\n[output]\ncolumns = [\"velocity\", \"wheel-speeds\", \"energy\"]\n[[wheel]]\nname = \
+                \"yaw\"\naxis = [0, 0, 1]\ninertia = 0.01\ntorque = \"1 N m\"\nlargest_torque = \"20 mN m\"\nlargest_speed = \
+                \"100 rpm\"\n";
+    let rows = rows(&folder, text);
+    let most = 100.0 * std::f64::consts::TAU / 60.0;
+    // The momentum of the wheel about its axis is u t, and that of the body the opposite.
+    for row in rows.iter().filter(|row| row[0] < 5.0) {
+        let (momentum, turn) = (0.02 * row[0], -0.02 * row[0]);
+        assert!((row[3] - turn).abs() < 1e-13 && (row[4] - (momentum / 0.01 - turn)).abs() < 1e-11, "{row:?}");
+        let energy = 0.5 * turn * turn + 0.5 * momentum * momentum / 0.01;
+        assert!((row[5] - energy).abs() < 1e-13, "{row:?}");
+    }
+    let end = &rows[rows.len() - 1];
+    // The body turns back while the wheel speeds up, by its share of the momentum.
+    assert!(rows.iter().all(|row| row[4] < most * 1.011) && end[4] > most * 0.999, "{end:?} {most}");
+    assert!((rows[60][4] - end[4]).abs() < 1e-12, "{:?} {end:?}", rows[60]);
+}
+
+/// A law of quaternion and rate ends where its torque is that of a disturbance, and its limits hold on the way.
+#[test]
+fn a_law_with_limits_settles_at_torque_over_gain() {
+    let folder = folder("a_law_with_limits_settles_at_torque_over_gain");
+    let text = "title = \"Held\"\n[body]\nmoments = [1, 2, 3]\n[start]\neuler = [0.5, 0.9, -0.3]\nvelocity = [0.1, 0, 0.2]\n\
+                [torque]\ntorque = [0.0005, -0.001, 0.001]\n[[control]]\ntorque = \"-kp * 2 * q - kd * Omega\"\nkp = 0.5\nkd = \
+                2\nevery = \"0.1 s\"\nlargest = \"0.1 N m\"\n[run]\nduration = 300\nstep = 0.05\n[output]\ncolumns = \
+                [\"quaternion\", \"velocity\", \"control\"]\nevery = 1\n";
+    let rows = rows(&folder, text);
+    let end = &rows[rows.len() - 1];
+    for (at, expected) in [0.001, -0.002, 0.002].into_iter().enumerate() {
+        assert!((end[2 + at] * 2.0 * end[1].signum() - expected).abs() < 1e-8, "{end:?}");
+        assert!((end[8 + at] + [0.0005, -0.001, 0.001][at]).abs() < 1e-8 && end[5 + at].abs() < 1e-8, "{end:?}");
+    }
+    assert!(rows.iter().all(|row| row[8..11].iter().all(|torque| torque.abs() <= 0.1)));
+    assert!(rows.iter().any(|row| row[8..11].iter().any(|torque| torque.abs() >= 0.1)));
+    // Held over two steps: the rows 2k + 1 and 2k + 2 have one torque.
+    for pair in rows[1..].chunks_exact(2) {
+        assert_eq!(pair[0][8..11], pair[1][8..11]);
+    }
+}
+
+/// A law of a wheel reads the body: it turns a body to the local vertical, and takes its momentum over.
+#[test]
+fn a_wheel_holds_a_body_at_the_local_vertical() {
+    let folder = folder("a_wheel_holds_a_body_at_the_local_vertical");
+    let wheel = |axis: usize| {
+        let mut direction = [0, 0, 0];
+        direction[axis] = 1;
+        format!(
+            "[[wheel]]\naxis = {direction:?}\ninertia = 0.01\nrelative_to = \"local vertical\"\ntorque = \"kp * q[{axis}] + kd * \
+             Omega[{axis}]\"\nkp = 0.02\nkd = 0.2\nevery = 0.5\n"
+        )
+    };
+    let text = format!(
+        "title = \"Nadir\"\n[body]\nmoments = [1, 1.2, 0.8]\n[orbit]\nperiod = 6000\nnormal = [0, 0.6, 0.8]\neccentricity = \
+         0.1\n[start]\nrelative_to = \"local vertical\"\nrpy = [\"20 deg\", \"-30 deg\", \"10 deg\"]\nvelocity = [0.01, 0, \
+         0]\n[run]\nduration = 1500\nstep = 0.5\n[output]\ncolumns = [\"roll-pitch-yaw\", \"spatial-momentum\"]\n{}",
+        (0..3).map(wheel).collect::<String>()
+    );
+    let rows = rows(&folder, &text);
+    let (first, end) = (&rows[0], &rows[rows.len() - 1]);
+    assert!((first[1] - 20_f64.to_radians()).abs() < 1e-12, "{first:?}");
+    // The nadir's rate changes along the orbit, which a law without an integral follows at a small distance.
+    assert!(end[1..4].iter().all(|angle| angle.abs() < 2e-3), "{end:?}");
+    for row in &rows {
+        let off = (0..3).map(|at| (row[4 + at] - first[4 + at]).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-14, "{off:e}");
+    }
+}
+
+/// A torque `m × b` with `m = −k ḃ` by two readings of the field, whose change along the orbit is in them.
+#[test]
+fn two_readings_of_a_field_are_its_rate() {
+    let folder = folder("two_readings_of_a_field_are_its_rate");
+    let (period, k, J) = (5801.23, 1e4, Vector3::new(0.9, 0.9, 0.3));
+    let rate = std::f64::consts::TAU / period;
+    let equator = Vector3::new(0.0, 0.0, 3.1e-5);
+    // A circle through the poles, in the plane of x and z.
+    let place = |t: f64| Vector3::new((rate * t).cos(), 0.0, (rate * t).sin());
+    let field = |t: f64| equator - place(t) * (3.0 * equator.dot(&place(t)));
+    let changed = |t: f64| (field(t + 1e-2) - field(t - 1e-2)) / 2e-2;
+    let f = |t: f64, y: &SVector<f64, 7>| {
+        let q = Quaternion::new(y[0], y[1], y[2], y[3]);
+        let R = UnitQuaternion::new_normalize(q).to_rotation_matrix();
+        let turn = Vector3::new(y[4], y[5], y[6]);
+        let b = R.inverse() * field(t);
+        let rate = R.inverse() * changed(t) - turn.cross(&b);
+        let torque = (-k * rate).cross(&b);
+        let spun = (torque - turn.cross(&J.component_mul(&turn))).component_div(&J);
+        let q = q * Quaternion::from_imag(turn) * 0.5;
+        SVector::from_iterator([q.w, q.i, q.j, q.k].into_iter().chain(spun.iter().copied()))
+    };
+    let start = 20_f64.to_radians();
+    let mut y = SVector::<f64, 7>::from_column_slice(&[1.0, 0.0, 0.0, 0.0, start, start, start]);
+    let h = 0.02;
+    for step in 0..30_000 {
+        let t = f64::from(step) * h;
+        let a = f(t, &y);
+        let b = f(t + h / 2.0, &(y + a * (0.5 * h)));
+        let c = f(t + h / 2.0, &(y + b * (0.5 * h)));
+        let d = f(t + h, &(y + c * h));
+        y += (a + (b + c) * 2.0 + d) * (h / 6.0);
+    }
+    let expected = Vector3::new(y[4], y[5], y[6]).norm();
+    let text = |every: f64| {
+        format!(
+            "title = \"Detumbling\"\n[body]\nmoments = [0.9, 0.9, 0.3]\nkinetic = \"geodesic\"\n[start]\neuler = [0, 0, \
+             0]\nvelocity = [\"20 deg/s\", \"20 deg/s\", \"20 deg/s\"]\n[orbit]\nperiod = {period}\nnormal = [0, -1, 0]\n\
+             [run]\nduration = 600\nstep = {every}\n[output]\ncolumns = [\"velocity\"]\n[[control]]\ntorque = \
+             \"(-k / every * (b - b_before)).cross(b)\"\nk = {k:?}\nB = {{ equator = [0, 0, \"31 µT\"] }}\nadvected = {{ b = \
+             \"B\" }}\n"
+        )
+    };
+    let error = |every: f64| {
+        let end = rows(&folder, &text(every)).pop().unwrap();
+        Vector3::new(end[1], end[2], end[3]).norm() - expected
+    };
+    // A difference of readings is late by half the time between them. The torque is across the field, and a delay turns it
+    // about the axis of the spin, so that the speed is of second order.
+    let [coarse, fine] = [error(0.1), error(0.05)];
+    assert!(fine.abs() < 0.01 * expected && (3.8..4.2).contains(&(coarse / fine)), "{coarse:e} {fine:e} {expected}");
+}
+
+/// Mistakes have their place.
+#[test]
+fn mistakes_of_laws_and_wheels_have_their_place() {
+    let folder = folder("mistakes_of_laws_and_wheels_have_their_place");
+    let law = |torque: &str, more: &str| format!("[[control]]\ntorque = \"{torque}\"\n{more}");
+    let wheel = |more: &str| format!("[[wheel]]\naxis = [0, 0, 1]\ninertia = 0.01\n{more}");
+    for (device, message) in [
+        (law("-kd * Omega", ""), "11:10: unknown name `kd`"),
+        (law("-2 * Omega[3]", ""), "the components of a vector are `v[0]`"),
+        (law("Omega.dot(q)", ""), "a torque is a vector"),
+        (law("Omega * q", ""), "the product of two vectors is"),
+        (law("Omega + 1", ""), "a vector and a number have no sum"),
+        (law("Omega / q", ""), "nothing is divided by a vector"),
+        (law("-(Omega", ""), "`)` is missing"),
+        (law("-Omega)", ""), "isn't expected behind"),
+        (law("", ""), "an expression is missing"),
+        (law(&"-(".repeat(200), ""), "at most 64 brackets"),
+        (law("Omega # 2", ""), "has no meaning"),
+        (law("curl(Omega)", ""), "`curl` is none of `abs`"),
+        (law("Omega.cross()", ""), "are of vectors"),
+        (law("-Omega", "every = 0.25"), "a whole number of steps"),
+        (law("-Omega", "Omega = 1"), "has another meaning"),
+        (law("-b", "advected = { b = \"B\" }"), "has no vector `B`"),
+        (law("-b", "advected = { b = \"B\" }\nB = { equator = [0, 0, 1] }"), "no table `[orbit]`"),
+        (law("-Omega", "relative_to = \"local vertical\""), "no table `[orbit]`"),
+        (law("-Omega", "largest = -1"), "a torque above zero for all axes"),
+        ("[[control]]\ntorque = [0, 0, 1]\n".to_owned(), "is a text"),
+        (wheel("torque = \"Omega\""), "the torque of a wheel is a number"),
+        (wheel("spin = 1"), "13:1: unknown field `spin`"),
+        (wheel("inertia_ = 1"), "unknown field `inertia_`"),
+        ("[[wheel]]\naxis = [0, 0, 2]\ninertia = 1\n".to_owned(), "a direction has the length 1"),
+        ("[[wheel]]\naxis = [0, 0, 1]\n".to_owned(), "missing field `inertia`"),
+        ("[wheel]\naxis = [0, 0, 1]\n".to_owned(), "is a list of tables"),
+        (wheel("name = \"a b\""), "letters, digits"),
+        (format!("{}{}", wheel("name = \"a\"\n"), wheel("name = \"a\"\n")), "two wheels have the name `a`"),
+    ] {
+        let text = format!(
+            "title = \"A law\"\n[body]\nmoments = [1, 1, 1]\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 0, 1]\n\
+             run = {{ duration = 1, step = 0.1 }}\n{device}\n"
+        );
+        let text = text.replace("run = { duration = 1, step = 0.1 }", "[run]\nduration = 1\nstep = 0.1");
+        fs::write(folder.join("scene.toml"), &text).unwrap();
+        let output = called(&folder, &["check", "scene.toml"]);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && told.contains(message), "{device}: {told}");
+    }
+    for (run, message) in [
+        ("accuracy = 1e-3", "beside a `step`"),
+        ("step = 0.1\nmethod = { composition = \"Suzuki 4\" }", "the scene's own step"),
+    ] {
+        let text = format!(
+            "title = \"A law\"\n[body]\nmoments = [1, 1, 1]\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 0, 1]\n[run]\nduration = \
+             1\n{run}\n[[control]]\ntorque = \"-Omega\"\n"
+        );
+        fs::write(folder.join("scene.toml"), &text).unwrap();
+        let told = String::from_utf8(called(&folder, &["check", "scene.toml"]).stderr).unwrap();
+        assert!(told.contains(message), "{run}: {told}");
+    }
+}
+
+/// Events between steps, an ensemble of starts and the summary have laws, too.
+#[test]
+fn events_and_ensembles_have_laws() {
+    let folder = folder("events_and_ensembles_have_laws");
+    let text = "title = \"Braked\"\n[body]\nmoments = [1, 1, 1]\nkinetic = \"geodesic\"\n[start]\neuler = [0, 0, 0]\nvelocity = \
+                [0, 0, 1]\n[run]\nduration = 4\nstep = 0.5\n[[control]]\ntorque = \"[0, 0, -0.25 * sign(Omega[2])]\"\n\
+                [[event]]\nname = \"half\"\nvelocity_z = 0.45\n[ensemble]\nmembers = 2\ndraw.start.velocity = [0, 0, { from = \
+                1, to = 1.000000001 }]\n";
+    fs::write(folder.join("scene.toml"), text).unwrap();
+    let told = printed(&folder, &["run", "scene.toml", "--csv", "--out", "."]);
+    let events = fs::read_to_string(folder.join("scene.events.csv")).unwrap();
+    let time: f64 = events.lines().nth(1).unwrap().split(',').nth(2).unwrap().parse().unwrap();
+    // 1 − t/4 = .45
+    assert!((time - 2.2).abs() < 1e-9 && told.contains("body + a law, 8 steps"), "{time} {told}");
+    printed(&folder, &["ensemble", "scene.toml", "--out", "."]);
+    let store = liestep_ensemble::Store::folder(folder.join("scene.ensemble")).unwrap();
+    for (_, path) in store.files().unwrap() {
+        let columns = liestep_ensemble::Store::read(&path).unwrap().rows.columns;
+        assert!(columns[2].iter().all(|rate| rate.abs() < 1e-8), "{:?}", columns[2]);
+    }
+}

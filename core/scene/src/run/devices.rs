@@ -1,0 +1,343 @@
+//! Steps of a body with laws and wheels: torques that are sampled and held, and momenta that wheels exchange with the body.
+
+use std::cell::RefCell;
+
+use liestep::mechanics::Inertia;
+use liestep::motion::{Layout, Propagator, StepReport};
+use liestep::{SetupError, StepError};
+use nalgebra::{Matrix3, Vector3};
+
+use crate::file::control::{Controller, Motor, Seen, Wheel, entries, fit, of_wheels, readings, stride};
+use crate::file::law::Value;
+use crate::file::orbit::Time;
+use crate::file::scene::SceneFile;
+use crate::run::data::{LibraryBody, Whole, numbers};
+
+/// A body with laws and wheels.
+///
+/// A wheel is the term `s·Ω` of a rotor, whose momentum `s` about its axis is the mean of its momentum over the step. A motor
+/// changes `s` and nothing else, so that the momentum in space of body and wheels together is conserved as that of a rotor
+/// is, whatever the motor does. The torque of a law is that of the effect `torque`, held from sample to sample.
+pub(crate) struct Devices {
+    file: RefCell<SceneFile>,
+    /// The moments without those of the wheels about their axes.
+    J: Inertia,
+    body: Option<LibraryBody>,
+    whole: Whole,
+    layout: Layout,
+    h: f64,
+}
+
+/// The memory of a state between its steps.
+#[derive(Clone)]
+struct Memory {
+    /// Momenta of the wheels about their axes, kg m²/s.
+    momenta: Vec<f64>,
+    /// Held torques of the laws of wheels, N m.
+    motors: Vec<f64>,
+    /// Held torque on the body, N m.
+    torque: Vector3<f64>,
+    /// The readings of the last sample of each law.
+    readings: Vec<Vector3<f64>>,
+    /// Time behind the last whole step, s.
+    part: f64,
+}
+
+const OF_THIS_LAYOUT: StepError = StepError::NonFinite { what: "state of this layout" };
+const OF_A_LAW: StepError = StepError::NonFinite { what: "torque of a law" };
+
+impl Memory {
+    fn read(entries: &[f64], wheels: usize) -> Self {
+        let (momenta, rest) = entries.split_at(wheels);
+        let (motors, rest) = rest.split_at(wheels);
+        let (torque, rest) = rest.split_at(3);
+        let (readings, part) = rest.split_at(rest.len() - 1);
+        let readings = readings.chunks(3).map(Vector3::from_column_slice).collect();
+        Self {
+            momenta: momenta.to_vec(),
+            motors: motors.to_vec(),
+            torque: Vector3::from_column_slice(torque),
+            readings,
+            part: part[0],
+        }
+    }
+
+    fn entries(&self) -> impl Iterator<Item = f64> + '_ {
+        let readings = self.readings.iter().flat_map(|reading| reading.iter().copied());
+        let held = self.momenta.iter().chain(&self.motors).chain(self.torque.iter()).copied();
+        held.chain(readings).chain([self.part])
+    }
+}
+
+impl Devices {
+    /// The stepper of a file with the terms that its devices need, whose parameters are those of `whole`.
+    pub(crate) fn new(
+        file: SceneFile,
+        J: Inertia,
+        body: Option<LibraryBody>,
+        whole: Whole,
+    ) -> Result<Self, SetupError> {
+        let h = whole.step_size();
+        if !fit(&file.control, &file.wheel, h) {
+            return Err(SetupError::Method { cause: "samples the laws between its steps" });
+        }
+        let mut all = Self { file: RefCell::new(file), J, body, layout: whole.layout().clone(), whole, h };
+        all.layout.memory += all.length();
+        Ok(all)
+    }
+
+    /// The number of entries of the memory.
+    fn length(&self) -> usize {
+        let file = self.file.borrow();
+        entries(&file.control, &file.wheel)
+    }
+
+    fn memory(&self, state: &[f64]) -> Memory {
+        let last = state.len() - 1;
+        Memory::read(&state[last - self.length()..last], self.file.borrow().wheel.len())
+    }
+
+    /// The state without the memory, as one of the inner stepper.
+    fn inner(&self, state: &[f64]) -> Vec<f64> {
+        let last = state.len() - 1;
+        [&state[..last - self.length()], &state[last..]].concat()
+    }
+
+    fn with_memory(inner: &[f64], memory: &Memory) -> Box<[f64]> {
+        let last = inner.len() - 1;
+        inner[..last].iter().copied().chain(memory.entries()).chain([inner[last]]).collect()
+    }
+
+    fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
+        if state.len() == self.layout.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
+    }
+
+    /// The inner stepper of a step of this start and length with momenta of the wheels and the held torque; with the length
+    /// zero that of a time.
+    fn held(&self, [start, length]: [f64; 2], momenta: &[f64], torque: Vector3<f64>) -> Result<Whole, StepError> {
+        let mut file = self.file.borrow_mut();
+        let is_known = file.set_over([start, length]);
+        let (rotor, own, spin) = (file.rotor, file.torque, spin(&file.wheel, momenta));
+        if let Some(rotor) = &mut file.rotor {
+            rotor.spin.value += spin;
+        }
+        if let Some(own) = &mut file.torque {
+            own.torque.value += torque;
+        }
+        let all = numbers(&file, &self.J, self.body.as_ref(), start + length * 0.5);
+        (file.rotor, file.torque) = (rotor, own);
+        let whole = self.whole.declaration().described(&all).ok().filter(|_| is_known);
+        let whole = whole.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
+        let step = if length == 0.0 { self.h } else { length };
+        whole.and_then(|numbers| self.whole.with(&numbers, step).ok()).ok_or(OF_A_LAW)
+    }
+
+    /// The state that laws read.
+    fn seen<R>(&self, state: &[f64], memory: &Memory, read: impl FnOnce(&SceneFile, &Seen<'_>) -> R) -> R {
+        let time = self.time(state);
+        let mut velocity = [0.0; 3];
+        match self.held([time, 0.0], &memory.momenta, memory.torque) {
+            Ok(whole) => whole.velocity(&self.inner(state), &mut velocity),
+            Err(_) => velocity.fill(f64::NAN),
+        }
+        let attitude = Matrix3::from_row_slice(&state[..9]);
+        let file = self.file.borrow();
+        let now = Time { time, orbit: file.orbit.as_ref() };
+        read(&file, &Seen { now, attitude, velocity: velocity.into() })
+    }
+
+    /// Takes the samples of the step ahead of a state.
+    fn sample(&self, state: &[f64], memory: &mut Memory) -> Result<(), StepError> {
+        let steps = state[state.len() - 1];
+        let before = memory.clone();
+        self.seen(state, &before, |file, seen| {
+            let is_due = |law: &Controller| stride(law, self.h).is_some_and(|stride| steps % stride == 0.0);
+            let (mut torque, mut is_new) = (Vector3::zeros(), false);
+            let mut place = 0;
+            let mut taken = |law: &Controller, speed: Option<f64>| {
+                let places = place..place + law.count_of_readings();
+                place = places.end;
+                is_due(law).then(|| {
+                    let now = law.readings(seen);
+                    let value = law.value(seen, (&now, &before.readings[places.clone()]), speed);
+                    memory.readings[places].copy_from_slice(&now);
+                    value
+                })
+            };
+            for control in &file.control {
+                if let Some(Value::Vector(value)) = taken(&control.controller, None) {
+                    torque += control.limited(value);
+                    is_new = true;
+                }
+            }
+            for (number, wheel) in file.wheel.iter().enumerate() {
+                let speed = before.momenta[number] / wheel.inertia - seen.velocity.dot(&wheel.axis);
+                if let Some(Value::Number(value)) = wheel.controller().and_then(|law| taken(law, Some(speed))) {
+                    memory.motors[number] = value;
+                }
+            }
+            if is_new {
+                memory.torque = torque;
+            }
+        });
+        let is_finite = memory.entries().all(f64::is_finite);
+        if is_finite { Ok(()) } else { Err(OF_A_LAW) }
+    }
+
+    /// The torques of the motors in a step of this start and length from a state, within their limits, N m.
+    fn motors(&self, state: &[f64], memory: &Memory, [start, length]: [f64; 2]) -> Vec<f64> {
+        self.seen(state, memory, |file, seen| {
+            let of = |(number, wheel): (usize, &Wheel)| {
+                let wanted = match &wheel.motor {
+                    Motor::Number(torque) => *torque,
+                    Motor::Law(_) => memory.motors[number],
+                    Motor::Signal(signal) => {
+                        let mut mean = vec![0.0; signal.width()];
+                        signal.mean([start, length], &mut mean);
+                        mean.first().copied().unwrap_or(f64::NAN)
+                    }
+                };
+                let speed = memory.momenta[number] / wheel.inertia - seen.velocity.dot(&wheel.axis);
+                // A motor at its largest speed doesn't drive on; what else the body does to the speed isn't its business.
+                let up = ((wheel.largest_speed - speed) * wheel.inertia / length.abs()).max(0.0);
+                let down = ((wheel.largest_speed + speed) * wheel.inertia / length.abs()).max(0.0);
+                let most = wheel.largest_torque;
+                wanted.max(-down).min(up).max(-most).min(most)
+            };
+            file.wheel.iter().enumerate().map(of).collect()
+        })
+    }
+
+    /// A step of this length, s, from a state; returns the inner state and the memory.
+    fn advance(&self, state: &[f64], length: f64) -> Result<(Vec<f64>, Memory, StepReport), StepError> {
+        let mut memory = self.memory(state);
+        if length > 0.0 && memory.part == 0.0 {
+            self.sample(state, &mut memory)?;
+        }
+        let span = [self.time(state), length];
+        let motors = self.motors(state, &memory, span);
+        let mean = memory.momenta.iter().zip(&motors).map(|(momentum, torque)| momentum + torque * length * 0.5);
+        let whole = self.held(span, &mean.collect::<Vec<_>>(), memory.torque)?;
+        let mut next = whole.adopt(&self.inner(state));
+        let report = whole.step(&mut next)?;
+        memory.momenta.iter_mut().zip(&motors).for_each(|(momentum, torque)| *momentum += torque * length);
+        Ok((next.to_vec(), memory, report))
+    }
+}
+
+/// The momentum of wheels, body frame.
+fn spin(wheels: &[Wheel], momenta: &[f64]) -> Vector3<f64> {
+    wheels.iter().zip(momenta).map(|(wheel, momentum)| wheel.axis * *momentum).sum()
+}
+
+impl Propagator for Devices {
+    fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
+        let rate = Vector3::from_column_slice(velocity.get(..3).unwrap_or(&[f64::NAN; 3]));
+        let momentum = |wheel: &Wheel| wheel.inertia * (rate.dot(&wheel.axis) + wheel.speed);
+        let momenta: Vec<f64> = self.file.borrow().wheel.iter().map(momentum).collect();
+        let whole = self.held([0.0, 0.0], &momenta, Vector3::zeros());
+        let whole = whole.map_err(|_| SetupError::NonFinite { what: "momentum of a wheel" })?;
+        let inner = whole.start(attitude, velocity)?;
+        // The sample before the first is that of the start.
+        let file = self.file.borrow();
+        let now = Time { time: 0.0, orbit: file.orbit.as_ref() };
+        let seen = Seen { now, attitude: Matrix3::from_row_slice(&inner[..9]), velocity: rate };
+        let readings = readings(&file.control, &file.wheel, &seen);
+        let (motors, torque) = (vec![0.0; momenta.len()], Vector3::zeros());
+        Ok(Self::with_memory(&inner, &Memory { momenta, motors, torque, readings, part: 0.0 }))
+    }
+
+    fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
+        let (mut next, mut memory, report) = self.advance(self.checked(state)?, self.h)?;
+        let (steps, last) = (state[state.len() - 1], next.len() - 1);
+        next[last] = steps + 1.0;
+        memory.part = 0.0;
+        state.copy_from_slice(&Self::with_memory(&next, &memory));
+        Ok(report)
+    }
+
+    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
+        let mut next = self.checked(state)?.to_vec();
+        let mut iterations = 0;
+        for _ in 0..steps {
+            iterations += u64::from(self.step(&mut next)?.iterations);
+        }
+        state.copy_from_slice(&next);
+        Ok(iterations)
+    }
+
+    fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
+        let length = self.h * fraction;
+        // So small a change would be lost in rounding. NaN isn't tiny.
+        if fraction.abs() < f64::EPSILON * f64::EPSILON {
+            return Ok(self.checked(state)?.into());
+        }
+        let (mut next, mut memory, _) = self.advance(self.checked(state)?, length)?;
+        let last = next.len() - 1;
+        next[last] = state[state.len() - 1];
+        memory.part += length;
+        Ok(Self::with_memory(&next, &memory))
+    }
+
+    fn adopt(&self, state: &[f64]) -> Box<[f64]> {
+        let nowhere = || vec![f64::NAN; self.layout.state()].into();
+        let (Some(attitude), Some(momentum)) = (state.get(self.layout.attitude()), state.get(self.layout.momentum()))
+        else {
+            return nowhere();
+        };
+        // A momentum is that of the body whose wheels are locked to it, and of their speeds.
+        let file = self.file.borrow();
+        let wheels = &file.wheel[..];
+        let speeds: Vector3<f64> = wheels.iter().map(|wheel| wheel.axis * (wheel.inertia * wheel.speed)).sum();
+        let rotor = file.rotor.map(|rotor| rotor.spin.value).unwrap_or_default();
+        let locked = (self.J.as_matrix() + of_wheels(wheels)).try_inverse();
+        drop(file);
+        let velocity = locked.map(|inverse| inverse * (Vector3::from_column_slice(momentum) - speeds - rotor));
+        velocity.and_then(|velocity| self.start(attitude, velocity.as_slice()).ok()).unwrap_or_else(nowhere)
+    }
+
+    fn step_size(&self) -> f64 {
+        self.h
+    }
+
+    fn time(&self, state: &[f64]) -> f64 {
+        self.checked(state).map_or(f64::NAN, |state| {
+            let last = state.len() - 1;
+            self.h * state[last] + state[last - 1]
+        })
+    }
+
+    fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
+        let found = self.checked(state).map(|state| {
+            let memory = self.memory(state);
+            self.seen(state, &memory, |_, seen| seen.velocity)
+        });
+        let found = found.unwrap_or_else(|_| Vector3::repeat(f64::NAN));
+        velocity.iter_mut().zip(found.iter()).for_each(|(place, part)| *place = *part);
+    }
+
+    fn energy(&self, state: &[f64]) -> f64 {
+        let Ok(state) = self.checked(state) else { return f64::NAN };
+        let memory = self.memory(state);
+        let whole = self.held([self.time(state), 0.0], &memory.momenta, memory.torque);
+        let of_body = whole.map_or(f64::NAN, |whole| whole.energy(&self.inner(state)));
+        let file = self.file.borrow();
+        let of_wheel = |(wheel, momentum): (&Wheel, &f64)| momentum * momentum / (2.0 * wheel.inertia);
+        of_body + file.wheel.iter().zip(&memory.momenta).map(of_wheel).sum::<f64>()
+    }
+
+    fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
+        match self.checked(state) {
+            Ok(state) => self.whole.spatial_momentum(&self.inner(state), momentum),
+            Err(_) => momentum.fill(f64::NAN),
+        }
+    }
+
+    fn defect(&self, state: &[f64]) -> f64 {
+        self.checked(state).map_or(f64::NAN, |state| self.whole.defect(&self.inner(state)))
+    }
+}
