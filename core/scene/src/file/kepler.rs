@@ -2,21 +2,34 @@
 
 use std::f64::consts::{PI, TAU};
 use std::num::NonZeroU32;
+use std::path::Path;
 
 use liestep::SetupError;
 use liestep::with::Clock;
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
 
+use crate::file::mistake::Mistake;
 use crate::file::quantity::{
     Angle, Direction, Duration, GravitationalParameter, Length, Number, PositiveScalar, Scalar, Speed, Triple,
 };
 use crate::file::tle::Lines;
 
-/// A closed orbit about a distant mass, by Kepler's laws.
+/// A closed orbit about a distant mass, by Kepler's laws; its keys are those of a [scene's table](crate::SceneFile) `orbit`.
+///
+/// # Examples
+///
+/// ```
+/// use liestep_scene::Orbit;
+///
+/// let orbit = Orbit::parse("period = \"90 min\"\nnormal = [0, 0, 1]\neccentricity = 0.2\nphase = \"180 deg\"")?;
+/// // At the far end, 1.2 semi-major axes from the mass.
+/// assert!((orbit.place(0.0).x + 1.2).abs() < 1e-15);
+/// # Ok::<(), liestep_scene::Mistake>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(try_from = "OrbitTable")]
-pub(crate) struct Orbit {
+pub struct Orbit {
     /// s.
     period: f64,
     eccentricity: f64,
@@ -166,6 +179,21 @@ fn mean_anomaly(true_anomaly: f64, e: f64) -> f64 {
 const ROUND: f64 = 1e-12;
 
 impl Orbit {
+    /// Parses the keys and values of an orbit, as a text of TOML.
+    ///
+    /// # Errors
+    ///
+    /// The first [`Mistake`] in it.
+    pub fn parse(text: &str) -> Result<Self, Mistake> {
+        toml::from_str(text).map_err(|error| Mistake::of_toml(Path::new("orbit"), text, &error))
+    }
+
+    /// The period, s.
+    #[must_use]
+    pub const fn period(&self) -> f64 {
+        self.period
+    }
+
     /// The orbit of the mean elements of two lines from their epoch on.
     fn of_lines(lines: &Lines) -> Self {
         let axes = turned_plane(lines.inclination, lines.ascending_node, lines.argument_of_perigee);
@@ -200,12 +228,14 @@ impl Orbit {
     }
 
     /// The mean motion `2π/T`, rad/s.
-    pub(crate) fn rate(&self) -> f64 {
+    #[must_use]
+    pub fn rate(&self) -> f64 {
         TAU / self.period
     }
 
     /// The body's position relative to the mass at a time, s: in space, in semi-major axes.
-    pub(crate) fn place(&self, time: f64) -> Vector3<f64> {
+    #[must_use]
+    pub fn place(&self, time: f64) -> Vector3<f64> {
         let e = self.eccentricity;
         // Whole turns are removed first, as they would cost digits of the angle.
         let anomaly = eccentric_anomaly(self.phase + TAU * ((time % self.period) / self.period), e);
@@ -215,15 +245,26 @@ impl Orbit {
 
     /// The angular velocity of the direction of the mass at a time, s, in space, rad/s: `n √(1 − e²) (a/r)²` about the
     /// normal, by Kepler's second law.
-    pub(crate) fn turning(&self, time: f64) -> Vector3<f64> {
+    #[must_use]
+    pub fn turning(&self, time: f64) -> Vector3<f64> {
         let [near, on] = &self.axes;
         let rate = self.rate() * ((1.0 - self.eccentricity) * (1.0 + self.eccentricity)).sqrt();
         near.cross(on) * (rate / self.place(time).norm_squared())
     }
 
+    /// The flux density of a dipole in the mass, fixed in space, at a time, s: `(a/r)³ (B − 3 (B·r̂) r̂)`, in the unit of `B`,
+    /// the field above the dipole's equator, a semi-major axis away.
+    #[must_use]
+    pub fn dipole_field(&self, equator: Vector3<f64>, time: f64) -> Vector3<f64> {
+        let place = self.place(time);
+        let square = place.norm_squared();
+        (equator - place * (3.0 * equator.dot(&place) / square)) / (square * square.sqrt())
+    }
+
     /// The local vertical frame at a time, s: its axes in space as columns. The third points to the mass, the second
     /// against the normal of the orbit, and the first completes them, ahead.
-    pub(crate) fn local_vertical(&self, time: f64) -> Matrix3<f64> {
+    #[must_use]
+    pub fn local_vertical(&self, time: f64) -> Matrix3<f64> {
         let down = -self.place(time).normalize();
         let [near, on] = &self.axes;
         let right = -near.cross(on);
