@@ -1,6 +1,6 @@
 //! Orbits, and what changes along them.
 
-use liestep_scene::Orbit as Kepler;
+use liestep::with::Kepler;
 use nalgebra::Vector3;
 use pyo3::prelude::*;
 
@@ -14,7 +14,7 @@ pub(crate) struct Orbit(Kepler);
 impl Orbit {
     #[new]
     fn new(text: &str) -> PyResult<Self> {
-        Ok(Self(Kepler::parse(text).map_err(Failure::from)?))
+        Ok(Self(liestep_scene::orbit(text).map_err(Failure::from)?))
     }
 
     /// The period, s.

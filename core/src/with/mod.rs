@@ -10,6 +10,7 @@ mod compensated;
 pub mod densities;
 mod density;
 mod driven;
+mod kepler;
 mod method;
 mod orbit;
 mod pace;
@@ -23,6 +24,7 @@ pub use compensated::{Carry, Compensable, CompensatedSums};
 #[doc(hidden)]
 pub use density::Density;
 pub use driven::Driven;
+pub use kepler::Kepler;
 pub use method::{Method, Scheme, Stages, Steppable, UnknownMethod};
 pub use pace::Pacable;
 #[doc(hidden)]

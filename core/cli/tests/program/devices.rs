@@ -277,6 +277,24 @@ fn mistakes_of_laws_and_wheels_have_their_place() {
     }
 }
 
+/// Laws with times of their own are held each by itself, and added.
+#[test]
+fn several_laws_are_added() {
+    let folder = folder("several_laws_are_added");
+    let text = "title = \"Two laws\"\n[body]\nmoments = [1, 1, 2]\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 0, 0]\n[run]\n\
+                duration = 2\nstep = 0.1\n[output]\ncolumns = [\"control\", \"velocity\"]\nevery = 1\n[[control]]\ntorque = \
+                \"[0, 0, 1]\"\n[[control]]\ntorque = \"[0, 0, 2 * t]\"\nevery = 0.5\n[[control]]\ntorque = \"[0, 0, 5]\"\n\
+                largest = [1, 1, 3]\nevery = 1\n";
+    let rows = rows(&folder, text);
+    let mut momentum = 0.0;
+    for (step, row) in rows.iter().enumerate().skip(1) {
+        let sampled = 0.5 * f64::from(u32::try_from((step - 1) / 5).unwrap());
+        let torque = 1.0 + 2.0 * sampled + 3.0;
+        momentum += 0.1 * torque;
+        assert!((row[3] - torque).abs() < 1e-12 && (row[6] * 2.0 - momentum).abs() < 1e-12, "{row:?}");
+    }
+}
+
 /// Events between steps, an ensemble of starts and the summary have laws, too.
 #[test]
 fn events_and_ensembles_have_laws() {

@@ -47,6 +47,8 @@ fn satellite(terms: &str, steps: u32, method: &str) -> String {
 
 const GRADIENT: &str = "[gravity_gradient]\ndirection = \"nadir\"\n";
 
+const DIPOLE: &str = "[dipole]\nmoment = [3, -2, 4]\n[dipole.field]\nequator = [\"2 µT\", \"5 µT\", \"25 µT\"]\n";
+
 /// A potential of the file's own follows an orbit as the library's does.
 #[test]
 fn own_terms_follow_an_orbit() {
@@ -65,12 +67,13 @@ fn own_terms_follow_an_orbit() {
     assert!(apart(&by_clock(&own), &by_clock(&listed)) < 1e-11);
 }
 
-/// Each stage of a composition has the direction of its own time.
+/// Each stage of a composition has the direction and the field of its own time.
 #[test]
 fn compositions_along_an_orbit_have_their_order() {
     let folder = folder("compositions_along_an_orbit_have_their_order");
     let end = |steps: u32, method: &str| {
-        let text = satellite(&format!("{GRADIENT}{ORBIT}"), steps, method);
+        let orbit = ORBIT.replace("eccentricity = 0.1", "eccentricity = 0.2");
+        let text = satellite(&format!("{GRADIENT}{DIPOLE}{orbit}"), steps, method);
         rows(&folder, &text).pop().unwrap()[1..8].to_vec()
     };
     let exact = end(800, "method = { composition = \"Kahan-Li 8\" }");

@@ -350,14 +350,14 @@ pub(crate) fn readings(controls: &[Control], wheels: &[Wheel], seen: &Seen<'_>) 
     laws(controls, wheels).flat_map(|(law, _)| law.readings(seen)).collect()
 }
 
-/// The number of entries that a state has for laws and wheels: a momentum and a torque of each wheel, the torque on the
+/// The number of entries that a state has for laws and wheels: a momentum and a torque of each wheel, the torques on the
 /// body, all readings, and a time.
 pub(crate) fn entries(controls: &[Control], wheels: &[Wheel]) -> usize {
     if controls.is_empty() && wheels.is_empty() {
         return 0;
     }
     let readings: usize = laws(controls, wheels).map(|(law, _)| law.count_of_readings()).sum();
-    2 * wheels.len() + 3 + 3 * readings + 1
+    2 * wheels.len() + 3 * controls.len() + 3 * readings + 1
 }
 
 /// Gives laws without a time between samples that of a step, s; refuses times that aren't whole numbers of steps, and laws

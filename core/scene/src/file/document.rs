@@ -59,7 +59,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
         if file.turning().next().is_none() {
             return Err(wrong("no parameter follows the orbit: give a `step`".to_owned()));
         }
-        let (_, step) = orbit.clock(steps).map_err(|error| wrong(error.to_string()))?;
+        let step = orbit.period() / f64::from(steps.get());
         file.run.pace = Pace::Step { step, steps: equal_steps(step, file.run.duration).map_err(wrong)? };
     }
     if let Pace::Step { step, .. } = file.run.pace {

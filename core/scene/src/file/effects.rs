@@ -7,7 +7,6 @@ use liestep::mechanics::{Effect, Inertia};
 use liestep_late::numbers;
 use serde::Deserialize;
 
-use crate::file::kepler::Orbit;
 use crate::file::orbit::{AirInTime, DirectionInTime, FieldInTime, Nadir, Parameter as _, Time, VectorInTime};
 use crate::file::quantity;
 use crate::file::quantity::{
@@ -44,7 +43,7 @@ macro_rules! effects {
                     let (GM, r) = match (p.direction, p.GM, p.r) {
                         (VectorInTime::Fixed(_), Some(GM), Some(r)) => (GM.value, r.value),
                         // Kepler's third law.
-                        (VectorInTime::Turns(Nadir::Nadir), ..) => (t.orbit.map_or(f64::NAN, Orbit::rate).powi(2), 1.0),
+                        (VectorInTime::Turns(Nadir::Nadir), ..) => (t.orbit.map_or(f64::NAN, |orbit| orbit.rate()).powi(2), 1.0),
                         // A gravity gradient without these values is refused when the file is read.
                         _ => (f64::NAN, f64::NAN),
                     };

@@ -89,7 +89,7 @@ impl AirInTime {
     pub(crate) fn at(&self, time: Time<'_>) -> Vector3<f64> {
         match self {
             Self::Fixed(rate) => rate.value,
-            Self::Turns(OnOrbit::Orbit) => time.along(Orbit::turning),
+            Self::Turns(OnOrbit::Orbit) => time.along(|orbit, time| orbit.turning(time)),
         }
     }
 }

@@ -45,7 +45,8 @@ pub(crate) struct View {
     pub(crate) orbit: Option<Orbit>,
     pub(crate) pointing: Arc<[Pointing]>,
     pub(crate) wheels: Arc<[Wheel]>,
-    pub(crate) has_control: bool,
+    /// The number of laws of torques on the body.
+    pub(crate) controls: usize,
     /// The number of entries that a state has for laws and wheels, before its last.
     pub(crate) memory: usize,
 }
@@ -75,7 +76,7 @@ impl View {
     /// The places of the torque of laws; empty without any.
     fn control(&self) -> Range<usize> {
         let start = self.speeds().end;
-        start..start + if self.has_control { 3 } else { 0 }
+        start..start + if self.controls > 0 { 3 } else { 0 }
     }
 
     /// The numbers of an attitude, body to space, and a velocity, body frame, in these places; `state` is that of the
@@ -89,7 +90,9 @@ impl View {
         let memory = state.get(last.saturating_sub(self.memory)..last).unwrap_or_default();
         let speed = |(wheel, momentum): (&Wheel, &f64)| momentum / wheel.inertia - velocity.dot(&wheel.axis);
         let speeds = self.wheels.iter().zip(memory).map(speed);
-        let torque = memory.iter().skip(2 * self.wheels.len()).take(self.control().len()).copied();
+        let torques = memory.get(2 * self.wheels.len()..).unwrap_or_default().chunks(3).take(self.controls);
+        let torque = torques.filter(|torque| torque.len() == 3).map(Vector3::from_column_slice).sum::<Vector3<f64>>();
+        let torque = torque.data.0[0].into_iter().take(self.control().len());
         let now = Time { time, orbit: self.orbit.as_ref() };
         let angles = self.pointing.iter().map(|pointing| pointing.angle(attitude, now));
         let seen = self.orbit.map(|orbit| orbit.local_vertical(time).tr_mul(attitude));

@@ -276,7 +276,7 @@ impl SceneFile {
             orbit: self.orbit,
             pointing: self.pointing.clone().into(),
             wheels: self.wheel.clone().into(),
-            has_control: !self.control.is_empty(),
+            controls: self.control.len(),
             memory: entries(&self.control, &self.wheel),
         }
     }

@@ -93,10 +93,10 @@ fn over_time(file: &SceneFile, J: Inertia, h: f64, method: Method) -> Result<Any
     let Data { sum, numbers } = Data::of(file, &J)?;
     let course = SceneCourse { file: RefCell::new(file.clone()), J, body: LibraryBody::of(file, J), sum };
     let whole = |h| Whole::of(sum, &numbers, h, method).map_err(whole_error);
-    let clock = file.run.steps_per_orbit.and_then(|steps| file.orbit?.clock(steps).ok());
+    let clock = file.run.steps_per_orbit.and_then(|steps| file.orbit?.clock(steps.get()).ok());
     let driven = match clock {
         None => whole(h)?.driven(course),
-        Some((clock, _)) => whole(1.0)?.with_clock(clock).driven(course),
+        Some(clock) => whole(1.0)?.with_clock(clock).driven(course),
     };
     driven.map(AnyStepper::new).map_err(Stop::Setup)
 }

@@ -35,8 +35,8 @@ struct Memory {
     momenta: Vec<f64>,
     /// Held torques of the laws of wheels, N m.
     motors: Vec<f64>,
-    /// Held torque on the body, N m.
-    torque: Vector3<f64>,
+    /// Held torque of each law on the body, N m.
+    torques: Vec<Vector3<f64>>,
     /// The readings of the last sample of each law.
     readings: Vec<Vector3<f64>>,
     /// Time behind the last whole step, s.
@@ -47,25 +47,19 @@ const OF_THIS_LAYOUT: StepError = StepError::NonFinite { what: "state of this la
 const OF_A_LAW: StepError = StepError::NonFinite { what: "torque of a law" };
 
 impl Memory {
-    fn read(entries: &[f64], wheels: usize) -> Self {
+    fn read(entries: &[f64], (wheels, controls): (usize, usize)) -> Self {
         let (momenta, rest) = entries.split_at(wheels);
         let (motors, rest) = rest.split_at(wheels);
-        let (torque, rest) = rest.split_at(3);
+        let (torques, rest) = rest.split_at(3 * controls);
         let (readings, part) = rest.split_at(rest.len() - 1);
-        let readings = readings.chunks(3).map(Vector3::from_column_slice).collect();
-        Self {
-            momenta: momenta.to_vec(),
-            motors: motors.to_vec(),
-            torque: Vector3::from_column_slice(torque),
-            readings,
-            part: part[0],
-        }
+        let [torques, readings] =
+            [torques, readings].map(|entries| entries.chunks(3).map(Vector3::from_column_slice).collect());
+        Self { momenta: momenta.to_vec(), motors: motors.to_vec(), torques, readings, part: part[0] }
     }
 
     fn entries(&self) -> impl Iterator<Item = f64> + '_ {
-        let readings = self.readings.iter().flat_map(|reading| reading.iter().copied());
-        let held = self.momenta.iter().chain(&self.motors).chain(self.torque.iter()).copied();
-        held.chain(readings).chain([self.part])
+        let vectors = self.torques.iter().chain(&self.readings).flat_map(|vector| vector.iter().copied());
+        self.momenta.iter().chain(&self.motors).copied().chain(vectors).chain([self.part])
     }
 }
 
@@ -92,9 +86,14 @@ impl Devices {
         entries(&file.control, &file.wheel)
     }
 
+    fn counts(&self) -> (usize, usize) {
+        let file = self.file.borrow();
+        (file.wheel.len(), file.control.len())
+    }
+
     fn memory(&self, state: &[f64]) -> Memory {
         let last = state.len() - 1;
-        Memory::read(&state[last - self.length()..last], self.file.borrow().wheel.len())
+        Memory::read(&state[last - self.length()..last], self.counts())
     }
 
     /// The state without the memory, as one of the inner stepper.
@@ -114,7 +113,7 @@ impl Devices {
 
     /// The inner stepper of a step of this start and length with momenta of the wheels and the held torque; with the length
     /// zero that of a time.
-    fn held(&self, [start, length]: [f64; 2], momenta: &[f64], torque: Vector3<f64>) -> Result<Whole, StepError> {
+    fn held(&self, [start, length]: [f64; 2], momenta: &[f64], torques: &[Vector3<f64>]) -> Result<Whole, StepError> {
         let mut file = self.file.borrow_mut();
         let is_known = file.set_over([start, length]);
         let (rotor, own, spin) = (file.rotor, file.torque, spin(&file.wheel, momenta));
@@ -122,7 +121,7 @@ impl Devices {
             rotor.spin.value += spin;
         }
         if let Some(own) = &mut file.torque {
-            own.torque.value += torque;
+            own.torque.value += torques.iter().sum::<Vector3<f64>>();
         }
         let all = numbers(&file, &self.J, self.body.as_ref(), start + length * 0.5);
         (file.rotor, file.torque) = (rotor, own);
@@ -132,92 +131,82 @@ impl Devices {
         whole.and_then(|numbers| self.whole.with(&numbers, step).ok()).ok_or(OF_A_LAW)
     }
 
-    /// The state that laws read.
-    fn seen<R>(&self, state: &[f64], memory: &Memory, read: impl FnOnce(&SceneFile, &Seen<'_>) -> R) -> R {
-        let time = self.time(state);
-        let mut velocity = [0.0; 3];
-        match self.held([time, 0.0], &memory.momenta, memory.torque) {
-            Ok(whole) => whole.velocity(&self.inner(state), &mut velocity),
-            Err(_) => velocity.fill(f64::NAN),
+    /// The angular velocity of a state, body frame; NaN if it isn't known.
+    fn rate(&self, state: &[f64], memory: &Memory) -> Vector3<f64> {
+        let mut velocity = [f64::NAN; 3];
+        if let Ok(whole) = self.held([self.time(state), 0.0], &memory.momenta, &memory.torques) {
+            whole.velocity(&self.inner(state), &mut velocity);
         }
-        let attitude = Matrix3::from_row_slice(&state[..9]);
-        let file = self.file.borrow();
-        let now = Time { time, orbit: file.orbit.as_ref() };
-        read(&file, &Seen { now, attitude, velocity: velocity.into() })
+        velocity.into()
     }
 
-    /// Takes the samples of the step ahead of a state.
-    fn sample(&self, state: &[f64], memory: &mut Memory) -> Result<(), StepError> {
+    /// Takes the samples of the step ahead of a state with this velocity.
+    fn sample(&self, state: &[f64], memory: &mut Memory, velocity: Vector3<f64>) -> Result<(), StepError> {
         let steps = state[state.len() - 1];
         let before = memory.clone();
-        self.seen(state, &before, |file, seen| {
-            let is_due = |law: &Controller| stride(law, self.h).is_some_and(|stride| steps % stride == 0.0);
-            let (mut torque, mut is_new) = (Vector3::zeros(), false);
-            let mut place = 0;
-            let mut taken = |law: &Controller, speed: Option<f64>| {
-                let places = place..place + law.count_of_readings();
-                place = places.end;
-                is_due(law).then(|| {
-                    let now = law.readings(seen);
-                    let value = law.value(seen, (&now, &before.readings[places.clone()]), speed);
-                    memory.readings[places].copy_from_slice(&now);
-                    value
-                })
-            };
-            for control in &file.control {
-                if let Some(Value::Vector(value)) = taken(&control.controller, None) {
-                    torque += control.limited(value);
-                    is_new = true;
-                }
+        let file = self.file.borrow();
+        let now = Time { time: self.time(state), orbit: file.orbit.as_ref() };
+        let seen = &Seen { now, attitude: Matrix3::from_row_slice(&state[..9]), velocity };
+        let is_due = |law: &Controller| stride(law, self.h).is_some_and(|stride| steps % stride == 0.0);
+        let mut place = 0;
+        let mut taken = |law: &Controller, speed: Option<f64>| {
+            let places = place..place + law.count_of_readings();
+            place = places.end;
+            is_due(law).then(|| {
+                let now = law.readings(seen);
+                let value = law.value(seen, (&now, &before.readings[places.clone()]), speed);
+                memory.readings[places].copy_from_slice(&now);
+                value
+            })
+        };
+        for (number, control) in file.control.iter().enumerate() {
+            if let Some(Value::Vector(value)) = taken(&control.controller, None) {
+                memory.torques[number] = control.limited(value);
             }
-            for (number, wheel) in file.wheel.iter().enumerate() {
-                let speed = before.momenta[number] / wheel.inertia - seen.velocity.dot(&wheel.axis);
-                if let Some(Value::Number(value)) = wheel.controller().and_then(|law| taken(law, Some(speed))) {
-                    memory.motors[number] = value;
-                }
+        }
+        for (number, wheel) in file.wheel.iter().enumerate() {
+            let speed = before.momenta[number] / wheel.inertia - seen.velocity.dot(&wheel.axis);
+            if let Some(Value::Number(value)) = wheel.controller().and_then(|law| taken(law, Some(speed))) {
+                memory.motors[number] = value;
             }
-            if is_new {
-                memory.torque = torque;
-            }
-        });
+        }
         let is_finite = memory.entries().all(f64::is_finite);
         if is_finite { Ok(()) } else { Err(OF_A_LAW) }
     }
 
-    /// The torques of the motors in a step of this start and length from a state, within their limits, N m.
-    fn motors(&self, state: &[f64], memory: &Memory, [start, length]: [f64; 2]) -> Vec<f64> {
-        self.seen(state, memory, |file, seen| {
-            let of = |(number, wheel): (usize, &Wheel)| {
-                let wanted = match &wheel.motor {
-                    Motor::Number(torque) => *torque,
-                    Motor::Law(_) => memory.motors[number],
-                    Motor::Signal(signal) => {
-                        let mut mean = vec![0.0; signal.width()];
-                        signal.mean([start, length], &mut mean);
-                        mean.first().copied().unwrap_or(f64::NAN)
-                    }
-                };
-                let speed = memory.momenta[number] / wheel.inertia - seen.velocity.dot(&wheel.axis);
-                // A motor at its largest speed doesn't drive on; what else the body does to the speed isn't its business.
-                let up = ((wheel.largest_speed - speed) * wheel.inertia / length.abs()).max(0.0);
-                let down = ((wheel.largest_speed + speed) * wheel.inertia / length.abs()).max(0.0);
-                let most = wheel.largest_torque;
-                wanted.max(-down).min(up).max(-most).min(most)
+    /// The torques of the motors in a step of this start and length from a state with this velocity, within their limits, N m.
+    fn motors(&self, memory: &Memory, velocity: &Vector3<f64>, [start, length]: [f64; 2]) -> Vec<f64> {
+        let of = |(number, wheel): (usize, &Wheel)| {
+            let wanted = match &wheel.motor {
+                Motor::Number(torque) => *torque,
+                Motor::Law(_) => memory.motors[number],
+                Motor::Signal(signal) => {
+                    let mut mean = vec![0.0; signal.width()];
+                    signal.mean([start, length], &mut mean);
+                    mean.first().copied().unwrap_or(f64::NAN)
+                }
             };
-            file.wheel.iter().enumerate().map(of).collect()
-        })
+            let speed = memory.momenta[number] / wheel.inertia - velocity.dot(&wheel.axis);
+            // A motor at its largest speed doesn't drive on; what else the body does to the speed isn't its business.
+            let up = ((wheel.largest_speed - speed) * wheel.inertia / length.abs()).max(0.0);
+            let down = ((wheel.largest_speed + speed) * wheel.inertia / length.abs()).max(0.0);
+            let most = wheel.largest_torque;
+            wanted.max(-down).min(up).max(-most).min(most)
+        };
+        self.file.borrow().wheel.iter().enumerate().map(of).collect()
     }
 
     /// A step of this length, s, from a state; returns the inner state and the memory.
     fn advance(&self, state: &[f64], length: f64) -> Result<(Vec<f64>, Memory, StepReport), StepError> {
         let mut memory = self.memory(state);
+        let velocity = self.rate(state, &memory);
         if length > 0.0 && memory.part == 0.0 {
-            self.sample(state, &mut memory)?;
+            self.sample(state, &mut memory, velocity)?;
         }
         let span = [self.time(state), length];
-        let motors = self.motors(state, &memory, span);
+        let motors = self.motors(&memory, &velocity, span);
         let mean = memory.momenta.iter().zip(&motors).map(|(momentum, torque)| momentum + torque * length * 0.5);
-        let whole = self.held(span, &mean.collect::<Vec<_>>(), memory.torque)?;
+        let whole = self.held(span, &mean.collect::<Vec<_>>(), &memory.torques)?;
         let mut next = whole.adopt(&self.inner(state));
         let report = whole.step(&mut next)?;
         memory.momenta.iter_mut().zip(&motors).for_each(|(momentum, torque)| *momentum += torque * length);
@@ -239,7 +228,7 @@ impl Propagator for Devices {
         let rate = Vector3::from_column_slice(velocity.get(..3).unwrap_or(&[f64::NAN; 3]));
         let momentum = |wheel: &Wheel| wheel.inertia * (rate.dot(&wheel.axis) + wheel.speed);
         let momenta: Vec<f64> = self.file.borrow().wheel.iter().map(momentum).collect();
-        let whole = self.held([0.0, 0.0], &momenta, Vector3::zeros());
+        let whole = self.held([0.0, 0.0], &momenta, &[]);
         let whole = whole.map_err(|_| SetupError::NonFinite { what: "momentum of a wheel" })?;
         let inner = whole.start(attitude, velocity)?;
         // The sample before the first is that of the start.
@@ -247,8 +236,8 @@ impl Propagator for Devices {
         let now = Time { time: 0.0, orbit: file.orbit.as_ref() };
         let seen = Seen { now, attitude: Matrix3::from_row_slice(&inner[..9]), velocity: rate };
         let readings = readings(&file.control, &file.wheel, &seen);
-        let (motors, torque) = (vec![0.0; momenta.len()], Vector3::zeros());
-        Ok(Self::with_memory(&inner, &Memory { momenta, motors, torque, readings, part: 0.0 }))
+        let (motors, torques) = (vec![0.0; momenta.len()], vec![Vector3::zeros(); file.control.len()]);
+        Ok(Self::with_memory(&inner, &Memory { momenta, motors, torques, readings, part: 0.0 }))
     }
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
@@ -312,10 +301,7 @@ impl Propagator for Devices {
     }
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
-        let found = self.checked(state).map(|state| {
-            let memory = self.memory(state);
-            self.seen(state, &memory, |_, seen| seen.velocity)
-        });
+        let found = self.checked(state).map(|state| self.rate(state, &self.memory(state)));
         let found = found.unwrap_or_else(|_| Vector3::repeat(f64::NAN));
         velocity.iter_mut().zip(found.iter()).for_each(|(place, part)| *place = *part);
     }
@@ -323,7 +309,7 @@ impl Propagator for Devices {
     fn energy(&self, state: &[f64]) -> f64 {
         let Ok(state) = self.checked(state) else { return f64::NAN };
         let memory = self.memory(state);
-        let whole = self.held([self.time(state), 0.0], &memory.momenta, memory.torque);
+        let whole = self.held([self.time(state), 0.0], &memory.momenta, &memory.torques);
         let of_body = whole.map_or(f64::NAN, |whole| whole.energy(&self.inner(state)));
         let file = self.file.borrow();
         let of_wheel = |(wheel, momentum): (&Wheel, &f64)| momentum * momentum / (2.0 * wheel.inertia);

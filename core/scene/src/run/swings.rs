@@ -4,7 +4,6 @@ use liestep::mechanics::Inertia;
 use liestep::with::Scheme;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::file::kepler::Orbit;
 use crate::file::orbit::VectorInTime;
 use crate::file::quantity::{round, short};
 use crate::file::scene::SceneFile;
@@ -73,7 +72,7 @@ impl SceneFile {
         let gradient = self.gravity_gradient.map(|gradient| {
             let strength = match (gradient.GM, gradient.r, gradient.direction) {
                 (Some(GM), Some(r), _) => GM.value / r.value.powi(3),
-                (.., VectorInTime::Turns(_)) => self.orbit.as_ref().map_or(0.0, Orbit::rate).powi(2),
+                (.., VectorInTime::Turns(_)) => self.orbit.map_or(0.0, |orbit| orbit.rate()).powi(2),
                 _ => 0.0,
             };
             let mut moments: [f64; 3] = J.principal_moments().into();
