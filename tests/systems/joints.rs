@@ -5,7 +5,7 @@ use declarations::{FallingBody, FloatingBody};
 use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 use liestep::groups::{LieGroup as _, R3};
 use liestep::methods::{Joint, Multibody, MultibodyStepper};
-use liestep::{NonstandardInertia, SO3, SetupError, StepError};
+use liestep::{NonstandardInertia, SO3, SetupError, StepError, lagrangian};
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3, Vector6};
 
 type Body = (SO3, R3);
@@ -32,6 +32,18 @@ fn six(turn: [f64; 3], shift: [f64; 3]) -> Vector6<f64> {
 
 fn position(stepper: &MultibodyStepper, state: &[f64], body: usize) -> Vector3<f64> {
     stepper.attitude(state, body).1.translation()
+}
+
+/// A mass without extent, and its weight.
+#[lagrangian(
+    group(d = R3),
+    advected(x = d.seen_from(space)),
+    l_d = m * d.norm_squared() / (2.0 * h) - 0.5 * h * m * g * (x + x + d)[2],
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Point {
+    m: f64,
+    g: f64,
 }
 
 /// The solution of `y'' = f(y, y')` after a time by many steps of the Runge–Kutta method of order four.
@@ -358,4 +370,104 @@ fn a_function_that_is_implied_at_the_start_alone() {
     let mut state = stepper.start_nearest(&places, &velocities).unwrap();
     let stopped = (0..1000).find_map(|_| stepper.step(&mut state).err());
     assert!(matches!(stopped, Some(StepError::SingularJoint { joint: 3, .. })), "{stopped:?}");
+}
+
+/// A parallelogram of three heavy rods falls through its change point, where it is flat and could go on with its cranks turning
+/// opposite ways. It goes on as a parallelogram, which moves as a pendulum.
+#[test]
+fn a_parallelogram_passes_its_change_point() {
+    let down = Vector3::new(0.010_193_6, -1.0, 0.0).normalize();
+    let moments = [0.083_333_3, 4.208_333_3, 4.208_333_3];
+    let rod = FallingBody { m: 50.0, J_d: inertia(moments), g: 9.8105, up: -down };
+    let [half, zero] = [Vector3::x() * 0.5, Vector3::zeros()];
+    let passed = |h: f64, steps: u32| {
+        let mut system = Multibody::new();
+        let [crank, coupler, follower] = [0; 3].map(|_| system.body(rod));
+        let mut pin = |points, above, below| system.join(Joint::pin(points, [Vector3::z(); 2]), above, below);
+        pin([zero, -half], None, crank);
+        pin([half, -half], Some(crank), coupler);
+        pin([half, half], Some(coupler), follower);
+        pin([Vector3::x(), -half], None, follower);
+        let turned = Rotation3::from_axis_angle(&Vector3::z_axis(), core::f64::consts::FRAC_PI_2);
+        let standing = |x: f64| (SO3::from(turned), R3::from(Vector3::new(x, 0.5, 0.0)));
+        let places = [standing(0.0), at(0.5, 1.0, 0.0), standing(1.0)];
+        let (system, _) = system.independent(&places).unwrap();
+        let stepper = system.stepper(h).unwrap();
+        let mut state = stepper.start(&places, &[Vector6::zeros(); 3]).unwrap();
+        let (mut before, mut flat) = (std::f64::consts::FRAC_PI_2, None);
+        for step in 0..steps {
+            stepper.step(&mut state).unwrap_or_else(|error| panic!("step {step} of {h} s: {error}"));
+            assert!(stepper.widest_gap(&state) < 1e-14);
+            let [x, y] = [0, 1].map(|k| position(&stepper, &state, crank)[k]);
+            let (angle, rate) = (y.atan2(x), stepper.velocity(&state, crank)[2]);
+            if before > 0.0 && angle <= 0.0 {
+                flat = Some((h * f64::from(step + 1) - angle / rate, rate));
+            }
+            before = angle;
+        }
+        let turned = stepper.attitude(&state, coupler).0.as_matrix() - Matrix3::identity();
+        assert!(turned.amax() < 1e-11, "{turned}");
+        (before, flat.unwrap())
+    };
+    // The coupler moves without turning, at the ends of both cranks.
+    let moment = 2.0 * (moments[2] + 12.5) + 50.0;
+    let pull = |[y]: &[f64; 1], _: &[f64; 1]| [100.0 * 9.8105 * (down.y * y.cos() - down.x * y.sin()) / moment];
+    let ([angle], _) = solved(pull, ([std::f64::consts::FRAC_PI_2], [0.0]), 2.0);
+    assert!((angle + 1.944_82).abs() < 1e-5, "{angle}");
+    let (_, (time, rate)) = passed(0.0005, 4000);
+    assert!((time - 1.688_72).abs() < 1e-5 && (rate + 4.874).abs() < 5e-3, "flat at {time} s, by {rate} rad/s");
+    assert_second_order([(0.01, 200), (0.005, 400)].map(|(h, steps)| (passed(h, steps).0 - angle).abs()));
+}
+
+/// A point mass on a pin and one on a pin at a body swing as in equations of angles; on a ball joint, a point mass may turn without
+/// moving, which is refused.
+#[test]
+fn point_masses_on_pins() {
+    let point = |m: f64| Point { m, g: 9.81 };
+    let (zero, half) = (Vector3::zeros(), Vector3::z() * 0.5);
+    let swing = |h: f64, steps: u64| {
+        let mut system = Multibody::new();
+        let bob = system.body(point(1.0));
+        system.join(Joint::pin([zero, half], [Vector3::y(); 2]), None, bob);
+        let stepper = system.stepper(h).unwrap();
+        let start = six([0.0, 1.0, 0.0], [-0.5, 0.0, 0.0]);
+        let mut state = stepper.start(&[at(0.0, 0.0, -0.5)], &[start]).unwrap();
+        assert!((stepper.velocity(&state, bob) - start).amax() < 1e-15);
+        assert!((stepper.energy(&state) - (0.125 - 0.5 * 9.81)).abs() < 1e-14);
+        stepper.run(&mut state, steps).unwrap();
+        assert!(stepper.widest_gap(&state) < 1e-14);
+        position(&stepper, &state, bob)
+    };
+    let ([angle], _) = solved(|[y], _| [-2.0 * 9.81 * y.sin()], ([0.0], [1.0]), 1.0);
+    let expected = Vector3::new(-0.5 * angle.sin(), 0.0, -0.5 * angle.cos());
+    // The values of a solver of order eight.
+    assert!((expected - Vector3::new(0.107_334, 0.0, -0.488_344)).amax() < 1e-6, "{expected}");
+    assert_second_order([(0.01, 100), (0.005, 200)].map(|(h, steps)| (swing(h, steps) - expected).norm()));
+    // The double pendulum of two point masses, by equations of its two angles.
+    let double = |h: f64, steps: u64| {
+        let mut system = Multibody::new();
+        let (upper, lower) = (system.body(point(1.0)), system.body(point(0.5)));
+        system.join(Joint::pin([zero, half], [Vector3::y(); 2]), None, upper);
+        system.join(Joint::pin([zero, half], [Vector3::y(); 2]), Some(upper), lower);
+        let stepper = system.stepper(h).unwrap();
+        let velocities = [six([0.0, 1.0, 0.0], [-0.5, 0.0, 0.0]), six([0.0, 3.0, 0.0], [-2.0, 0.0, 0.0])];
+        let mut state = stepper.start(&[at(0.0, 0.0, -0.5), at(0.0, 0.0, -1.0)], &velocities).unwrap();
+        stepper.run(&mut state, steps).unwrap();
+        position(&stepper, &state, lower)
+    };
+    let angles = |[a, b]: &[f64; 2], [u, v]: &[f64; 2]| {
+        let (sine, cosine, g) = ((a - b).sin(), (a - b).cos(), 9.81 / 0.5);
+        // (1 + ½) a'' + ½ b'' cos(a−b) = −½ v² sin(a−b) − 1.5 g sin a,  b'' + a'' cos(a−b) = u² sin(a−b) − g sin b
+        let (first, second) = (-0.5 * v * v * sine - 1.5 * g * a.sin(), u * u * sine - g * b.sin());
+        let a2 = (first - 0.5 * cosine * second) / (1.5 - 0.5 * cosine * cosine);
+        [a2, second - a2 * cosine]
+    };
+    let ([a, b], _) = solved(angles, ([0.0; 2], [1.0, 3.0]), 1.0);
+    let expected = Vector3::new(-0.5 * (a.sin() + b.sin()), 0.0, -0.5 * (a.cos() + b.cos()));
+    assert_second_order([(0.005, 200), (0.0025, 400)].map(|(h, steps)| (double(h, steps) - expected).norm()));
+    let mut system = Multibody::new();
+    let bob = system.body(point(1.0));
+    system.join(Joint::ball([zero, half]), None, bob);
+    let refused = system.stepper(0.01).and_then(|stepper| stepper.start(&[at(0.0, 0.0, -0.5)], &[Vector6::zeros()]));
+    assert!(matches!(refused, Err(SetupError::SingularKinetic { .. })), "{refused:?}");
 }

@@ -103,12 +103,19 @@ fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Out
     let picture = system.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
     output.write(&name(path, "svg"), &picture)?;
     tables_have_grown(given, path, output)?;
-    notes(&run);
-    if given.get_flag("html") {
-        let path = visible(&path.display().to_string());
-        eprintln!("note: a page plays one body, and {path} has several: there is none of it");
+    if given.get_flag("csv") && system.events().next().is_some() {
+        let table = system.event_table(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
+        output.write(&name(path, "events.csv"), &table)?;
     }
-    print(&(system.summary(&run) + &system.end_error(&run)))
+    if given.get_flag("html") {
+        output.write(&name(path, "html"), &system.page(&run))?;
+    }
+    notes(&run);
+    print(&(system.summary(&run) + &system.end_error(&run)))?;
+    if let Some(sweep) = system.sweep() {
+        eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points.len());
+    }
+    Ok(())
 }
 
 /// Prints remarks about the file.
@@ -186,6 +193,9 @@ fn checked(path: &Path) -> Result<String, Failure> {
             let first = system.first(1)?;
             notes(&first);
             let changes = system.changes(&first);
+            for (_, point) in system.sweep().map(|sweep| sweep.points.as_slice()).unwrap_or_default() {
+                point.first(1)?;
+            }
             return Ok(format!("{}\n{changes}", system.about()));
         }
     };

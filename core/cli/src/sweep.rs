@@ -7,34 +7,58 @@ use std::sync::mpsc;
 use std::thread;
 
 use clap::ArgMatches;
-use liestep_scene::{Mistake, SceneFile, Sweep};
+use liestep_plot::output::Output;
+use liestep_scene::{Mistake, Scene, SceneFile, Sweep, System};
 
 use crate::failure::Failure;
-use crate::files::{different_files, folder, name, scenes};
+use crate::files::{different_files, folder, name};
 use crate::output::print;
 
 pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
     let paths = different_files(given)?;
-    let scenes = scenes(&paths)?;
-    let sweeps: Vec<(&Path, &Sweep)> = paths
-        .iter()
-        .zip(&scenes)
-        .map(|(path, scene)| {
-            let sweep = scene.sweep().ok_or_else(|| Mistake::no_table(path, "sweep"))?;
-            Ok((path.as_path(), sweep))
-        })
-        .collect::<Result<_, Mistake>>()?;
+    let scenes: Vec<Scene> = paths.iter().map(Scene::read).collect::<Result<_, _>>()?;
+    let has_sweep = |scene: &Scene| match scene {
+        Scene::Body(scene) => scene.sweep().is_some(),
+        Scene::System(system) => system.sweep().is_some(),
+    };
+    if let Some((path, _)) = paths.iter().zip(&scenes).find(|(_, scene)| !has_sweep(scene)) {
+        return Err(Mistake::no_table(path, "sweep").into());
+    }
     let mut output = folder(given)?;
     let mut stopped = 0;
-    for (path, sweep) in sweeps {
-        // Another name than the table of a run.
-        let name = name(path, "sweep.csv");
-        let mut file = output.grows(&name);
-        let points = &sweep.points;
-        let ends = points.first().map(|(_, scene)| scene.end_names()).unwrap_or_default();
-        file.add(&format!("{}\n", sweep.names.iter().chain(&ends).map(String::as_str).collect::<Vec<_>>().join(",")))?;
-        let end = |(_, scene): &(Vec<String>, SceneFile)| scene.run().map(|run| scene.end(&run));
-        in_order(points, end, |(values, _), end| {
+    for (path, scene) in paths.iter().zip(&scenes) {
+        stopped += match scene {
+            Scene::Body(scene) => scene.sweep().map(|sweep| {
+                rows(path, sweep, SceneFile::end_names, |scene| scene.run().map(|run| scene.end(&run)), &mut output)
+            }),
+            Scene::System(system) => system.sweep().map(|sweep| {
+                rows(path, sweep, System::end_names, |system| system.run().map(|run| system.end(&run)), &mut output)
+            }),
+        }
+        .unwrap_or(Ok(0))?;
+    }
+    print(&output.to_string())?;
+    if stopped == 0 { Ok(()) } else { Err(Failure::Runs(format!("{stopped} scenes of the sweep stopped"))) }
+}
+
+/// Writes the table of a sweep; returns how many of its scenes stopped.
+fn rows<S: Sync>(
+    path: &Path,
+    sweep: &Sweep<S>,
+    names: impl Fn(&S) -> Vec<String>,
+    end: impl Fn(&S) -> Result<Vec<f64>, Mistake> + Sync,
+    output: &mut Output,
+) -> Result<usize, Failure> {
+    // Another name than the table of a run.
+    let name = name(path, "sweep.csv");
+    let (mut file, mut stopped) = (output.grows(&name), 0);
+    let points = &sweep.points;
+    let ends = points.first().map(|(_, scene)| names(scene)).unwrap_or_default();
+    file.add(&format!("{}\n", sweep.names.iter().chain(&ends).map(String::as_str).collect::<Vec<_>>().join(",")))?;
+    in_order(
+        points,
+        |(_, scene): &(Vec<String>, S)| end(scene),
+        |(values, _), end| {
             let mut row = values.join(",");
             match end {
                 Ok(end) => row.extend(end.iter().map(|value| format!(",{value:?}"))),
@@ -48,12 +72,11 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
             }
             row.push('\n');
             Ok(file.add(&row)?)
-        })?;
-        drop(file);
-        output.grown(&name)?;
-    }
-    print(&output.to_string())?;
-    if stopped == 0 { Ok(()) } else { Err(Failure::Runs(format!("{stopped} scenes of the sweep stopped"))) }
+        },
+    )?;
+    drop(file);
+    output.grown(&name)?;
+    Ok(stopped)
 }
 
 /// Computes answers on all threads, and passes them to `take` in order, as early as possible.

@@ -127,8 +127,10 @@ impl FileRun {
     /// The events that occurred: a name, a time, and whether the quantity rose.
     #[getter]
     fn events(&self) -> Vec<(String, f64, bool)> {
-        let Scene::Body(scene) = &self.scene else { return Vec::new() };
-        let names: Vec<&str> = scene.events().collect();
+        let names: Vec<&str> = match &self.scene {
+            Scene::Body(scene) => scene.events().collect(),
+            Scene::System(system) => system.events().collect(),
+        };
         let happened = self.run.happenings().iter();
         happened
             .map(|one| (names.get(one.event).map_or("", |name| name).to_owned(), one.sample.time, one.rising))
@@ -143,11 +145,11 @@ impl FileRun {
         Ok(drawn.map_err(|error| Failure::Of("Error", error.to_string()))?)
     }
 
-    /// The page that plays the run; none for several bodies.
-    fn page(&self) -> Option<String> {
+    /// The page that plays the run.
+    fn page(&self) -> String {
         match &self.scene {
-            Scene::Body(scene) => Some(scene.page(&self.run)),
-            Scene::System(_) => None,
+            Scene::Body(scene) => scene.page(&self.run),
+            Scene::System(system) => system.page(&self.run),
         }
     }
 }

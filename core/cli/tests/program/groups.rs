@@ -255,6 +255,6 @@ fn a_scene_on_a_group_is_one_as_any_other() {
     printed(&folder, &["run", "pose.toml", "--csv", "--html", "--arrow", "--out", "."]);
     let [page, events] =
         ["html", "events.csv"].map(|end| fs::read_to_string(folder.join(format!("pose.{end}"))).unwrap());
-    assert!(page.contains("attitudes: \"\",") && page.contains("\"Velocity of the body\""));
+    assert!(page.contains("bodies: [\n],") && page.contains("\"Velocity of the body\""));
     assert!(events.starts_with("event,rising,t,velocity_1,") && events.contains("\nlow,0,0.7"), "{events}");
 }

@@ -6,7 +6,7 @@ use std::fs;
 use liestep_scene::{Import, Run, Scene, import};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::called::{folder, refuses};
+use crate::called::{folder, printed, refuses, table};
 
 fn imported(test: &str, text: &str, floats: bool) -> Import {
     let path = folder(test).join("robot.urdf");
@@ -102,8 +102,12 @@ fn a_double_pendulum() {
         joint("flange", "fixed", ["far", "tool"], "<origin xyz=\"0 0 0.5\"/>"),
     ]);
     let Import { text: scene, remarks } = imported("double-pendulum", &text, false);
-    assert_eq!(remarks, ["joint shoulder: its limits aren't imposed"]);
-    assert!(scene.starts_with("# joint shoulder: its limits aren't imposed\ntitle = \"arm\"\n"), "{scene}");
+    assert_eq!(remarks, ["joint shoulder: its limits are watched, not imposed"]);
+    assert!(scene.starts_with("# joint shoulder: its limits are watched, not imposed\ntitle = \"arm\"\n"), "{scene}");
+    assert!(
+        scene.contains("name = \"shoulder\"\n") && scene.contains("limits = { from = -1.0, to = 1.0 }\n"),
+        "{scene}"
+    );
     // The first angle is 0.7 rad about y, the second 0.5 rad more.
     let [first, second] = [0.7, 1.2];
     let moved = scene.replacen("angle = 0\n", "angle = 0.7\n", 1).replacen("angle = 0\n", "angle = 0.5\n", 1);
@@ -191,7 +195,7 @@ fn whatever_has_no_counterpart_is_listed() {
         "link thin: `visual` is a shape, and shapes aren't read",
         "link thin: `collision` is a shape, and shapes aren't read",
         "joint first: `safety_controller`: no counterpart",
-        "joint first: its limits aren't imposed",
+        "joint first: its limits leave it no way, left out",
         "joint second: it moves by itself, and doesn't follow first",
         "link camera and joint lens: without a mass at the end of an arm, left out",
         "link thin: no body has its inertia, as a principal moment is at most the sum of the others; the least one is raised",
@@ -203,6 +207,48 @@ fn whatever_has_no_counterpart_is_listed() {
     assert_eq!(remarks, expected);
     let run = run(&text.replace("duration = 1\n", "duration = 0.05\n"));
     assert!(run.samples().iter().all(|sample| sample.energy.is_finite()));
+}
+
+/// The guide's arm: its model is imported, its joints get the drives of the listings, and it comes to rest where they carry its
+/// weight; the run has a page.
+#[test]
+fn the_arm_of_the_guide() {
+    let guide = include_str!("../../../src/guide/bodies.md").split("# A robot arm\n").nth(1).unwrap();
+    let listings = |kind: &str| -> Vec<&str> {
+        let fence = format!("```{kind}\n");
+        guide.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap()).collect()
+    };
+    let folder = folder("arm");
+    fs::write(folder.join("arm.urdf"), listings("xml")[0]).unwrap();
+    printed(&folder, &["import", "arm.urdf", "--out", "."]);
+    let mut scene = fs::read_to_string(folder.join("arm.toml")).unwrap();
+    let [turn, shoulder, elbow, end] = listings("toml")[..] else { panic!("four listings") };
+    for keys in [turn, shoulder, elbow] {
+        let (name, keys) = keys.strip_prefix("# ").unwrap().split_once('\n').unwrap();
+        let head = format!("[[joint]]\nname = \"{name}\"\n");
+        assert!(scene.contains(&head), "{scene}");
+        scene = scene.replace(&head, &format!("{head}{keys}"));
+    }
+    let scene = scene.split("[run]").next().unwrap().to_owned() + end;
+    fs::write(folder.join("arm.toml"), scene).unwrap();
+    printed(&folder, &["run", "arm.toml", "--html", "--csv", "--out", "."]);
+    let page = fs::read_to_string(folder.join("arm.html")).unwrap();
+    assert!(page.contains("title: \"Angles of joints\"") && page.contains("{name: \"shoulder_angle\""));
+    let rows = table(&fs::read_to_string(folder.join("arm.csv")).unwrap());
+    let last = rows.last().unwrap();
+    let [turned, leant, bent] = [1, 2, 3].map(|at| last[at]);
+    // At rest the torque of each drive is that of the weight that it carries: k (φ − rest) = Σ m g x, by the arms x of all bodies
+    // beyond the joint.
+    let (upper, fore) = (0.2 * leant.sin(), 0.4 * leant.sin() + 0.15 * (leant + bent).sin());
+    let weight = [9.81 * (2.5 * upper + 1.2 * fore), 9.81 * 1.2 * (fore - 0.4 * leant.sin())];
+    let of_drives = [(leant - 50.0_f64.to_radians()) * 300.0, (bent - 70.0_f64.to_radians()) * 80.0];
+    println!("{turned} {leant} {bent}, {weight:?} {of_drives:?}");
+    assert!((turned - std::f64::consts::FRAC_PI_2).abs() < 1e-3, "{turned}");
+    for (weight, drive) in weight.iter().zip(of_drives) {
+        assert!((weight - drive).abs() < 1e-3 * weight, "{weight} {drive}");
+    }
+    // The lowest joint carries all.
+    assert!((last[6] - 9.81 * 9.7).abs() < 1e-3, "{last:?}");
 }
 
 /// Mistakes have places in the model.

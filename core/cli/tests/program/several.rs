@@ -312,16 +312,23 @@ fn columns_have_names_of_their_own() {
     assert!(system(&ball).columns().iter().any(|column| column.name == "gap" && column.unit == "m"));
 }
 
-/// Files of several bodies have derivations and pictures, and no page.
+/// Files of several bodies have derivations, pictures and pages.
 #[test]
 fn results_of_several_bodies() {
     let folder = folder("several");
     fs::write(folder.join("held.toml"), HELD).unwrap();
     fs::write(folder.join("top.toml"), TOP).unwrap();
-    // Only the body of `top.toml` has a page; the other results are written for both files.
     assert!(called(&folder, &["run", "top.toml", "held.toml", "--html", "--out", "pages"]).status.success());
     let there = ["top.html", "held.svg", "held.html"].map(|name| folder.join("pages").join(name).exists());
-    assert_eq!(there, [true, true, false]);
+    assert_eq!(there, [true, true, true]);
+    let page = fs::read_to_string(folder.join("pages/held.html")).unwrap();
+    let shown = [
+        "name: \"upper\", sides: [[",
+        "name: \"lower\", sides: [[",
+        "title: \"Angles of joints\"",
+        "title: \"Gaps of joints\"",
+    ];
+    assert!(shown.iter().all(|part| page.contains(part)), "{}", &page[..2000]);
     let derivation = printed(&folder, &["derive", "held.toml"]);
     let parts = ["momentum", "x_b + R_b ρ_b − x_a − R_a ρ_a = 0", "R_a e_2 · R_b n_b = 0"];
     assert!(parts.iter().all(|part| derivation.contains(part)) && !derivation.contains("without gravity"));

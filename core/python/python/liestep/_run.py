@@ -339,7 +339,7 @@ class SceneRun(Motion):
         return self._run.picture()
 
     def html(self, path: str | Path | None = None) -> str | None:
-        """The page that plays it; none of several bodies."""
+        """The page that plays it."""
         page = self._run.page()
         if path is not None and page is not None:
             Path(path).write_text(page, encoding="utf-8")

@@ -8,10 +8,11 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::group::Group;
+use crate::file::joint::Kind;
 use crate::file::mistake::{SpanMessage, advised};
 use crate::file::sample::{BodySample, Sample};
 
-use Numbers::{Change, OfBody, OfScene, Part, SinceStart};
+use Numbers::{Change, OfBody, Part, SinceStart};
 
 #[doc = include_str!("column.md")]
 #[derive(Clone, Debug)]
@@ -30,7 +31,6 @@ enum Numbers {
     /// The norm of the change of such a part since the first state of the run; the change itself for one number.
     Change(Range<usize>),
     OfBody(fn(&BodySample) -> Vec<f64>),
-    OfScene(fn(&Sample) -> Vec<f64>),
     /// A difference between a state and the first state of the run.
     SinceStart(fn(&Sample, &Sample) -> f64),
 }
@@ -99,23 +99,49 @@ impl Column {
         (!places.is_empty()).then_some(Self { key, names, numbers: Part(places) })
     }
 
-    /// The columns of a scene of several bodies.
-    pub(crate) fn of_several_bodies() -> Vec<Self> {
-        vec![
-            Self::new("position", &["x", "y", "z"], "m", OfBody(|body| three(body.position))),
-            Self::new("quaternion", &Self::QUATERNION, "1", OfBody(|body| body.quaternion.to_vec())),
-            Self::new("velocity", &Self::VELOCITY, "rad/s", OfBody(|body| three(body.velocity))),
-            Self::new("moving", &["moving_x", "moving_y", "moving_z"], "m/s", OfBody(|body| three(body.moving))),
-            Self::new("energy", &["energy"], "J", OfScene(|sample| vec![sample.energy])),
-            Self::new("momentum", &MOMENTUM, "kg m/s", OfScene(|sample| three(sample.momentum))),
-            Self::new(
+    /// The columns of several bodies with joints of these names and kinds: the numbers of a sample, one after the other. The
+    /// gap has another unit where it combines a length with the cosines of axes.
+    pub(crate) fn of_system(bodies: &[&str], joints: &[(&str, Kind)]) -> Vec<Self> {
+        let mut end = 0;
+        let mut next = |key: &'static str, names: Vec<(String, &'static str)>| {
+            let start = end;
+            end += names.len();
+            Self { key, numbers: Part(start..end), names }
+        };
+        let named = |all: &mut dyn Iterator<Item = &&str>, names: &[&str], unit| -> Vec<_> {
+            all.flat_map(|one| names.iter().map(move |name| (format!("{one}_{name}"), unit))).collect()
+        };
+        let of_bodies = |names: &[&str], unit| named(&mut bodies.iter(), names, unit);
+        let of_joints = |has: fn(Kind) -> bool, names: &[&str], unit| {
+            named(&mut joints.iter().filter(|(_, kind)| has(*kind)).map(|(name, _)| name), names, unit)
+        };
+        let of_all = |names: &[&str], unit| names.iter().map(|name| ((*name).to_owned(), unit)).collect::<Vec<_>>();
+        let unit_of_gap = if joints.iter().any(|(_, kind)| kind.has_cosines()) { "m, 1" } else { "m" };
+        let every = |_: Kind| true;
+        let all = vec![
+            next("position", of_bodies(&["x", "y", "z"], "m")),
+            next("quaternion", of_bodies(&Self::QUATERNION, "1")),
+            next("velocity", of_bodies(&Self::VELOCITY, "rad/s")),
+            next("moving", of_bodies(&["moving_x", "moving_y", "moving_z"], "m/s")),
+            next("energy", of_all(&["energy"], "J")),
+            next("momentum", of_all(&MOMENTUM, "kg m/s")),
+            next(
                 "angular-momentum",
-                &["angular_momentum_x", "angular_momentum_y", "angular_momentum_z"],
-                "kg m²/s",
-                OfScene(|sample| three(sample.angular_momentum)),
+                of_all(&["angular_momentum_x", "angular_momentum_y", "angular_momentum_z"], "kg m²/s"),
             ),
-            Self::new("gap", &["gap"], "m", OfScene(|sample| vec![sample.gap])),
-        ]
+            next("gap", of_all(&["gap"], unit_of_gap)),
+            next("angle", of_joints(Kind::turns_about_axis, &["angle"], "rad")),
+            next("shift", of_joints(Kind::shifts_along_axis, &["shift"], "m")),
+            next("force", of_joints(every, &["force_x", "force_y", "force_z"], "N")),
+            next("torque", of_joints(every, &["torque_x", "torque_y", "torque_z"], "N m")),
+        ];
+        let energy = all.iter().find(|column| column.key == "energy").and_then(Self::part);
+        let error = energy.map(|energy| Self {
+            key: "energy-error",
+            names: of_all(&["energy_error"], "J"),
+            numbers: Change(energy),
+        });
+        all.into_iter().chain(error).collect()
     }
 
     fn new(key: &'static str, names: &[&str], unit: &'static str, numbers: Numbers) -> Self {
@@ -126,6 +152,11 @@ impl Column {
     #[must_use]
     pub const fn key(&self) -> &'static str {
         self.key
+    }
+
+    /// The places of the column's numbers in a sample, if they are a part of its numbers.
+    pub(crate) fn part(&self) -> Option<Range<usize>> {
+        if let Part(part) = &self.numbers { Some(part.clone()) } else { None }
     }
 
     /// The names of the column's numbers in the head of a table. With several bodies, the body's name precedes them.
@@ -140,7 +171,7 @@ impl Column {
 
     /// The place of a number of this name in a sample.
     pub(crate) fn place(&self, name: &str) -> Option<usize> {
-        let Part(part) = &self.numbers else { return None };
+        let part = self.part()?;
         self.names().position(|own| own == name).map(|at| part.start + at)
     }
 
@@ -150,31 +181,15 @@ impl Column {
             Part(part) => now.numbers[part.clone()].to_vec(),
             Change(part) => vec![change(&first.numbers[part.clone()], &now.numbers[part.clone()])],
             OfBody(numbers) => now.bodies.iter().flat_map(numbers).collect(),
-            OfScene(numbers) => numbers(now),
             SinceStart(number) => vec![number(first, now)],
         };
         columns.iter().flat_map(numbers).collect()
     }
 
-    /// The columns of a table, each with the number of its body. A single body has an empty name.
-    pub(crate) fn listed(columns: &[Self], bodies: &[&str]) -> Vec<(recording::Column, Option<usize>)> {
-        let mut all = Vec::new();
-        for column in columns {
-            let mut add = |before: &str, body| {
-                let named = |(name, unit): &(String, &str)| recording::Column {
-                    name: format!("{before}{name}"),
-                    unit: (*unit).to_owned(),
-                };
-                all.extend(column.names.iter().map(|name| (named(name), body)));
-            };
-            match column.numbers {
-                OfBody(_) if bodies != [""] => {
-                    bodies.iter().enumerate().for_each(|(number, body)| add(&format!("{body}_"), Some(number)));
-                }
-                _ => add("", None),
-            }
-        }
-        all
+    /// The columns of a table, by name and unit.
+    pub(crate) fn listed(columns: &[Self]) -> Vec<recording::Column> {
+        let named = |(name, unit): &(String, &str)| recording::Column { name: name.clone(), unit: (*unit).to_owned() };
+        columns.iter().flat_map(|column| column.names.iter().map(named)).collect()
     }
 }
 

@@ -71,7 +71,8 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let events = document.get_ref().get("event").and_then(|events| events.get_ref().as_array());
     for (number, event) in file.event.iter_mut().enumerate() {
         let at = || events.and_then(|events| events.get(number)).map_or(0..0, Spanned::span);
-        event.placed(&view, &at).map_err(located)?;
+        let one_body = if view.group.is_rotation() { Ok(()) } else { Err(NO_BODY) };
+        event.placed((&view.columns(), &|place| view.jumps(place)), one_body, &at).map_err(located)?;
     }
     at_odds(document, &file).map_or(Ok(()), Err).map_err(located)?;
     file.over_time.iter().find_map(|one| of_signal(one, &file)).map_or(Ok(()), Err).map_err(located)?;
@@ -152,6 +153,9 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage>
     file.sum = Some(sum);
     Ok(())
 }
+
+const NO_BODY: &str = "only a body on `SO3` has this quantity: on another group an event has a `column` with a \
+                       `value`, or an `energy`";
 
 const METHODS: &str = "is no method of a scene: `method` is \"step\", or a table as `{ composition = \"Suzuki 4\" }`, \
                        `{ splitting = \"Nyström 6-4\" }`, `{ processed = \"processed 3-6 a\" }` or `{ collocation = 8 }`; \

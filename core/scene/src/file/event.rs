@@ -5,8 +5,8 @@ use std::ops::Range;
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::file::column::Column;
 use crate::file::mistake::{SpanMessage, advised};
-use crate::file::pointing::View;
 use crate::file::quantity::{Angle, Any, Energy, Number, PositiveScalar, Rate, Scalar};
 
 /// An event to be detected along a run: a quantity passes a value.
@@ -98,16 +98,21 @@ impl TryFrom<EventTable> for Event {
 }
 
 impl Event {
-    /// Finds the place of a column on a group, or refuses the quantity of a body on another one.
-    pub(crate) fn placed(&mut self, view: &View, at: &dyn Fn() -> Range<usize>) -> Result<(), SpanMessage> {
+    /// Finds the place of a column among these, of which the numbers in some places jump, or refuses the quantity of one body
+    /// elsewhere: `one_body` says why there is none.
+    pub(crate) fn placed(
+        &mut self,
+        (columns, jumps): (&[Column], &dyn Fn(usize) -> bool),
+        one_body: Result<(), &str>,
+        at: &dyn Fn() -> Range<usize>,
+    ) -> Result<(), SpanMessage> {
         let Some(name) = &self.column else {
-            let is_known = view.group.is_rotation() || matches!(self.quantity, Quantity::Energy(_));
-            let message = "only a body on `SO3` has this quantity: on another group an event has a `column` with a \
-                           `value`, or an `energy`";
-            return if is_known { Ok(()) } else { Err((at(), message.to_owned())) };
+            return match one_body {
+                Err(message) if !matches!(self.quantity, Quantity::Energy(_)) => Err((at(), message.to_owned())),
+                _ => Ok(()),
+            };
         };
-        let columns = view.columns();
-        let is_whole = |place: usize| !view.jumps(place);
+        let is_whole = |place: usize| !jumps(place);
         let found = columns.iter().find_map(|column| column.place(name.get_ref())).filter(|place| is_whole(*place));
         let Some(place) = found else {
             let names = columns.iter().flat_map(|column| column.names().map(move |name| (name, column.place(name))));

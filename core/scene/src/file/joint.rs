@@ -27,9 +27,15 @@ pub(crate) struct Joint {
     /// The distance between the points of a rod, m.
     pub(crate) length: f64,
     pub(crate) terms: Terms,
+    pub(crate) limits: Option<Limits>,
     /// The start by the coordinates of the joint, of bodies without places of their own.
     pub(crate) start: Coordinates,
+    /// 1, or −1 where the file names the bodies in the other order: the sign of angles and shifts there.
+    pub(crate) sign: f64,
 }
+
+/// The attitude of a body, or of space, and the place of its origin.
+pub(crate) type Pose = (Matrix3<f64>, Vector3<f64>);
 
 /// Terms in a joint: those of a slider are of shifts, others of turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -51,6 +57,14 @@ impl Terms {
     pub(crate) fn has_spring(&self) -> bool {
         self.stiffness.is_some() || self.effort.is_some()
     }
+}
+
+/// The ends of a joint's way, which are watched: angles of a pin, rad, or shifts of a slider, m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limits {
+    pub(crate) ends: [f64; 2],
+    /// Whether the run stops there.
+    pub(crate) stops: bool,
 }
 
 /// Angle, rad, and shift, m, of a joint, and their rates.
@@ -110,7 +124,7 @@ impl Kind {
         !matches!(self, Self::Slider | Self::Weld | Self::Distance)
     }
 
-    fn shifts_along_axis(self) -> bool {
+    pub(crate) fn shifts_along_axis(self) -> bool {
         matches!(self, Self::Slider | Self::Cylinder)
     }
 
@@ -151,6 +165,7 @@ pub(crate) struct JointTable {
     torque: Value,
     force: Value,
     friction: Option<Spanned<FrictionTable>>,
+    limits: Option<Spanned<LimitsTable>>,
     angle: Value,
     rate: Value,
     shift: Value,
@@ -167,6 +182,33 @@ struct FrictionTable {
     torque: PositiveScalar<Torque>,
     /// The rate below which friction is viscous.
     below: PositiveScalar<Rate>,
+}
+
+/// The ends of a joint's way.
+#[derive(Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct LimitsTable {
+    from: Spanned<toml::Value>,
+    to: Spanned<toml::Value>,
+    #[serde(default)]
+    stop: bool,
+}
+
+impl LimitsTable {
+    fn limits<Q: Quantity>(self, span: Range<usize>, most: f64) -> Result<Limits, SpanMessage> {
+        let end = |value| Ok(read::<Q>(&Some(value))?.unwrap_or(0.0));
+        let [from, to] = [end(self.from)?, end(self.to)?];
+        if from >= to {
+            return Err((span, "a joint moves `from` one place `to` a greater one".to_owned()));
+        }
+        if to - from >= most {
+            return Err((
+                span,
+                "these limits are a turn apart or more, so that none is reached: leave them out".to_owned(),
+            ));
+        }
+        Ok(Limits { ends: [from, to], stops: self.stop })
+    }
 }
 
 /// The number of a value with the units of a quantity.
@@ -247,6 +289,9 @@ impl JointTable {
         if let (Some(friction), false) = (&self.friction, kind.turns()) {
             return refuse(friction.span(), format!("a {name} has no dry `friction`: it is for joints that turn"));
         }
+        if let (Some(limits), false) = (&self.limits, matches!(kind, Kind::Pin | Kind::Slider)) {
+            return refuse(limits.span(), format!("a {name} has no `limits`: those of a pin and a slider are watched"));
+        }
         if let (Some(rest), None) = (&self.rest, &self.stiffness) {
             return refuse(rest.span(), "a spring that is at `rest` somewhere has a `stiffness`".to_owned());
         }
@@ -310,9 +355,18 @@ impl JointTable {
             shift: read::<Length>(&self.shift)?.unwrap_or(0.0),
             speed: read::<Speed>(&self.speed)?.unwrap_or(0.0),
         };
+        let limits = self.limits.map(|limits| {
+            let (span, limits) = (limits.span(), limits.into_inner());
+            if is_slider {
+                limits.limits::<Length>(span, f64::INFINITY)
+            } else {
+                limits.limits::<Angle>(span, std::f64::consts::TAU)
+            }
+        });
+        let limits = limits.transpose()?;
         let length = self.length.map_or(0.0, |length| length.into_inner().value);
         let at = self.at.map(|point| point.value);
-        let joint = Joint { kind, at, axes, zero, length, terms, start };
+        let joint = Joint { kind, at, axes, zero, length, terms, limits, start, sign: 1.0 };
         Ok(if is_swapped { joint.swapped() } else { joint })
     }
 }
@@ -320,13 +374,23 @@ impl JointTable {
 impl Joint {
     /// The joint from the other end: angles, shifts and what acts along them have the opposite sign.
     fn swapped(self) -> Self {
-        let Self { mut at, mut axes, zero, terms, start, .. } = self;
+        let Self { mut at, mut axes, zero, terms, limits, start, .. } = self;
         at.swap(0, 1);
         axes.swap(0, 1);
         let Coordinates { angle, rate, shift, speed } = start;
         let terms = Terms { rest: -terms.rest, effort: terms.effort.map(|effort| -effort), ..terms };
         let start = Coordinates { angle: -angle, rate: -rate, shift: -shift, speed: -speed };
-        Self { at, axes, zero: zero.transpose(), terms, start, ..self }
+        let limits = limits.map(|limits| Limits { ends: [-limits.ends[1], -limits.ends[0]], ..limits });
+        Self { at, axes, zero: zero.transpose(), terms, limits, start, sign: -self.sign, ..self }
+    }
+
+    /// The angle about the axis, rad, from −π to π, and the shift along it, m, between bodies in these poses.
+    pub(crate) fn coordinates(&self, [(above, at), (below, to)]: [&Pose; 2]) -> [f64; 2] {
+        let Self { at: points, axes: [axis, _], zero, .. } = self;
+        let turned = above.tr_mul(below) * zero.transpose();
+        let sine = Vector3::new(turned.m32 - turned.m23, turned.m13 - turned.m31, turned.m21 - turned.m12) * 0.5;
+        let apart = above.tr_mul(&(to + below * points[1] - at)) - points[0];
+        [sine.dot(axis).atan2((turned.trace() - 1.0) * 0.5), axis.dot(&apart)]
     }
 
     /// The constraint.

@@ -30,6 +30,7 @@ pub(crate) mod read;
 pub(crate) mod sample;
 pub(crate) mod scene;
 pub(crate) mod schedule;
+pub(crate) mod shape;
 pub(crate) mod start;
 pub(crate) mod sweep;
 pub(crate) mod system;

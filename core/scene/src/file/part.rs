@@ -1,16 +1,27 @@
 //! The parts of a system: its bodies, and what is between two of them.
 
-use liestep::mechanics::Inertia;
-use nalgebra::Vector3;
+use std::ops::Range;
 
-use crate::file::body::Kinetic;
+use liestep::NonstandardInertia;
+use liestep::mechanics::Inertia;
+use nalgebra::{UnitQuaternion, Vector3};
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::file::body::{INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
+use crate::file::mistake::SpanMessage;
+use crate::file::quantity::{self, Density, Length, Mass, PositiveScalar, Speed, Triple};
+use crate::file::shape::{BoxTable, RoundTable, Shape, SphereTable};
 use crate::file::start::Start;
 
 #[derive(Clone)]
 pub(crate) struct SystemBody {
     pub(crate) name: String,
     pub(crate) m: f64,
-    pub(crate) J: Inertia,
+    /// About the centre of mass; none of a point mass.
+    pub(crate) J: Option<Inertia>,
+    /// The shape that the body has in pictures, if it is known.
+    pub(crate) shape: Option<Shape>,
     /// A kinetic term of second order.
     pub(crate) kinetic: Kinetic,
     pub(crate) position: Vector3<f64>,
@@ -25,9 +36,123 @@ pub(crate) struct Between<T> {
     pub(crate) of: T,
 }
 
-/// The joint's name in the file, and whether its bodies stand there in the other order.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct JointName {
-    pub(crate) name: Option<String>,
-    pub(crate) is_swapped: bool,
+/// The name of space among bodies.
+pub(crate) const SPACE: &str = "space";
+
+/// The keys of a body.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct BodyTable {
+    name: Spanned<String>,
+    m: Option<PositiveScalar<Mass>>,
+    density: Option<PositiveScalar<Density>>,
+    moments: Option<PrincipalMoments>,
+    J_d: Option<NonstandardMoments>,
+    J: Option<InertiaRows>,
+    r#box: Option<BoxTable>,
+    cylinder: Option<RoundTable>,
+    capsule: Option<RoundTable>,
+    sphere: Option<SphereTable>,
+    kinetic: Option<Spanned<Kinetic>>,
+    position: Option<Triple<Length>>,
+    moving: Option<Triple<Speed>>,
+    start: Option<Start>,
+}
+
+/// Principal moments of a body, or the zeros of a point mass.
+#[derive(Deserialize)]
+#[serde(try_from = "Triple<quantity::Inertia>")]
+struct PrincipalMoments(Option<Inertia>);
+
+impl TryFrom<Triple<quantity::Inertia>> for PrincipalMoments {
+    type Error = String;
+
+    fn try_from(moments: Triple<quantity::Inertia>) -> Result<Self, String> {
+        if moments.value == Vector3::zeros() {
+            return Ok(Self(None));
+        }
+        Moments::try_from(moments).map(|moments| Self(Some(moments.J)))
+    }
+}
+
+/// Whether a name may be the prefix of columns.
+pub(crate) fn is_plain(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter))
+}
+
+const MASSES: &str = "a body has a mass `m`, or a `density` with one of `box`, `cylinder`, `capsule`, `sphere`";
+
+impl BodyTable {
+    /// The shape, if one is given.
+    fn shape(&self) -> Result<Option<Shape>, &'static str> {
+        let shapes = [
+            self.r#box.map(Shape::from),
+            self.cylinder.map(|round| round.shape(false)),
+            self.capsule.map(|round| round.shape(true)),
+            self.sphere.map(Shape::from),
+        ];
+        let mut shapes = shapes.into_iter().flatten();
+        match (shapes.next(), shapes.next()) {
+            (_, Some(_)) => Err("a body has one of `box`, `cylinder`, `capsule`, `sphere`"),
+            (shape, None) => Ok(shape),
+        }
+    }
+
+    /// The mass, and the inertia of one that isn't a point mass.
+    fn mass(&self, shape: Option<&Shape>) -> Result<(f64, Option<Inertia>), String> {
+        let m = match (&self.m, &self.density, shape) {
+            (Some(m), None, _) => m.value,
+            (None, Some(density), Some(shape)) => density.value * shape.volume(),
+            _ => return Err(MASSES.to_owned()),
+        };
+        let J = match (&self.moments, &self.J_d, &self.J, shape) {
+            (Some(PrincipalMoments(J)), None, None, _) => *J,
+            (None, None, Some(InertiaRows(J)), _) => Some(*J),
+            (None, Some(NonstandardMoments(J_d)), None, _) => Some(NonstandardInertia::from(*J_d).to_inertia()),
+            (None, None, None, Some(shape)) => {
+                Some(Inertia::new(shape.inertia() * m).map_err(|error| error.to_string())?)
+            }
+            _ => return Err(format!("{INERTIA}, or a shape: `box`, `cylinder`, `capsule`, `sphere`")),
+        };
+        Ok((m, J))
+    }
+
+    /// The body of a table at this place, the place of its name, and whether it has a place in space.
+    pub(crate) fn body(self, span: Range<usize>) -> Result<(SystemBody, Range<usize>, bool), SpanMessage> {
+        let shape = self.shape().map_err(|message| (span.clone(), message.to_owned()))?;
+        let mass = self.mass(shape.as_ref());
+        let Self { name, kinetic, position, moving, start, .. } = self;
+        // The name of a body is the prefix of its columns.
+        if !is_plain(name.get_ref()) {
+            return Err((name.span(), "the `name` of a body has letters, digits, - and _ only".to_owned()));
+        }
+        if name.get_ref() == SPACE {
+            return Err((name.span(), "`space` is what bodies move in; give the body another name".to_owned()));
+        }
+        let (m, J) = mass.map_err(|message| (span, message))?;
+        if let Some(kinetic) = kinetic.as_ref().filter(|kinetic| kinetic.get_ref().order() != 2) {
+            let message =
+                "a body among several is `geodesic`, `rigid` or `cayley`: joints and springs are of second order";
+            return Err((kinetic.span(), message.to_owned()));
+        }
+        let kinetic = kinetic.map_or(Kinetic::Geodesic, Spanned::into_inner);
+        let has_place = position.is_some();
+        let wrong = match (has_place, start.is_some(), moving.is_some()) {
+            (true, false, _) => Some("a body with a `position` has a `start`, too: its attitude and angular velocity"),
+            (false, true, _) => Some("a body with a `start` has a `position`, too; one that joints place has neither"),
+            (false, false, true) => {
+                Some("a body that is `moving` has a `position` and a `start`; joints have `rate` and `speed`")
+            }
+            _ => None,
+        };
+        if let Some(message) = wrong {
+            return Err((name.span(), message.to_owned()));
+        }
+        let moving = moving.map_or_else(Vector3::zeros, |moving| moving.value);
+        let position = position.map_or_else(Vector3::zeros, |position| position.value);
+        let start = start.unwrap_or(Start { attitude: UnitQuaternion::identity(), velocity: Vector3::zeros() });
+        let place = name.span();
+        let body = SystemBody { name: name.into_inner(), m, J, shape, kinetic, position, moving, start };
+        Ok((body, place, has_place))
+    }
 }

@@ -34,6 +34,8 @@ impl Pose {
 
     fn set(&self, body: &mut SystemBody) {
         let attitude = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(self.attitude));
+        // Along a row of hundreds of bodies rounding errors grow to where the attitude would be no rotation.
+        let attitude = UnitQuaternion::new_normalize(attitude.into_inner());
         body.start = Start { attitude, velocity: self.attitude.tr_mul(&self.turning) };
         (body.position, body.moving) = (self.position, self.moving);
     }

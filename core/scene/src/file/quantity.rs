@@ -53,6 +53,7 @@ quantities! {
     Acceleration: "an acceleration" in "m/s²" 1.0;
     Angle: "an angle" up to TURN in "rad" 1.0, "deg" DEGREE, "°" DEGREE;
     Damping: "a damping coefficient" in "N m s" 1.0;
+    Density: "a density" in "kg/m³" 1.0, "g/cm³" 1e3;
     Duration: "a time" in "s" 1.0, "ms" 1e-3, "min" 60.0, "h" 3600.0, "d" 86_400.0;
     FluxDensity: "a magnetic flux density" in "T" 1.0, "mT" 1e-3, "µT" 1e-6, "nT" 1e-9, "G" 1e-4;
     Energy: "an energy" in "J" 1.0, "mJ" 1e-3, "kJ" 1e3;

@@ -68,9 +68,7 @@ pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<SceneFile, Mistake> {
     let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
     if has_several(document.get_ref()) {
-        let message =
-            "the file has several bodies, and sweeps, ensembles and pages are of one body: `liestep run` runs it"
-                .to_owned();
+        let message = "the file has several bodies, and ensembles are of one body: `liestep run` runs it".to_owned();
         return Err(located((span(&document, &["body"]), message)));
     }
     let [sweep, drawn] = ["sweep", "ensemble"].map(|table| document.get_mut().remove(table));

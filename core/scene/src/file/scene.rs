@@ -177,7 +177,7 @@ impl SceneFile {
 
     /// The columns that follow the time in a table, one for each number.
     pub(crate) fn listed(&self) -> Vec<recording::Column> {
-        Column::listed(&self.columns, &[""]).into_iter().map(|(column, _)| column).collect()
+        Column::listed(&self.columns)
     }
 
     /// The ensemble of scenes, if the file has a table `ensemble`.
@@ -335,9 +335,9 @@ impl SceneFile {
 /// The scenes of a sweep: one for each combination of its values. The last key varies fastest.
 #[derive(Clone)]
 #[non_exhaustive]
-pub struct Sweep {
+pub struct Sweep<S = SceneFile> {
     /// The varied keys, such as `gravity.m`, in the order of the file.
     pub names: Vec<String>,
     /// Each scene, with the texts of its varied values.
-    pub points: Vec<(Vec<String>, SceneFile)>,
+    pub points: Vec<(Vec<String>, S)>,
 }

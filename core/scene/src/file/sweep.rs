@@ -7,7 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::file::draws::measured;
 use crate::file::mistake::{Mistake, SpanMessage};
-use crate::file::scene::{SceneFile, Sweep};
+use crate::file::scene::Sweep;
 use crate::file::tables::{Document, Keys, dotted, ends, set};
 
 /// Most scenes of a sweep, each of which is a run.
@@ -46,12 +46,12 @@ impl Axis<'_> {
 }
 
 /// The sweep of a document; `located` finds the place of a mistake, and `scene` reads one scene.
-pub(crate) fn read(
+pub(crate) fn read<S>(
     document: &Document<'_>,
     table: &Spanned<DeValue<'_>>,
     located: &dyn Fn(SpanMessage) -> Mistake,
-    scene: &dyn Fn(&Document<'_>) -> Result<SceneFile, Mistake>,
-) -> Result<Sweep, Mistake> {
+    scene: &dyn Fn(&Document<'_>) -> Result<S, Mistake>,
+) -> Result<Sweep<S>, Mistake> {
     let DeValue::Table(inner) = table.get_ref() else {
         return Err(located((table.span(), "`sweep` is a table".to_owned())));
     };

@@ -1,26 +1,31 @@
 //! The file of a system of several bodies.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use liestep::NonstandardInertia;
 use liestep::recording;
-use nalgebra::{UnitQuaternion, Vector3};
+use liestep::with::Scheme;
+use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
+use toml::de::{DeTable, Deserializer};
 
-use crate::file::body::{INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
 use crate::file::column::{Column, Output};
-use crate::file::joint::{Joint, JointTable, Names};
-use crate::file::mistake::{Mistake, SpanMessage, advised, place_of};
-use crate::file::part::{Between, JointName, SystemBody};
+use crate::file::event::{Event, Quantity};
+use crate::file::joint::{Joint, JointTable, Limits, Names};
+use crate::file::method::scheme;
+use crate::file::mistake::{Lines, Mistake, SpanMessage, advised};
+use crate::file::part::{Between, BodyTable, SPACE, SystemBody, is_plain};
 use crate::file::picture::PlanePicture;
 use crate::file::placed::place;
 use crate::file::quantity::{
-    Acceleration, Direction, Duration, Length, Mass, PositiveScalar, Scalar, Speed, Stiffness, Triple, round, short,
+    Acceleration, Direction, Duration, Length, PositiveScalar, Scalar, Stiffness, Triple, round, short,
 };
+use crate::file::scene::Sweep;
 use crate::file::schedule::{equal_steps, fraction};
-use crate::file::start::Start;
+use crate::file::sweep;
+use crate::file::tables::Document;
 use crate::file::text::title;
 
 /// Several bodies, with joints and springs between them.
@@ -28,15 +33,18 @@ use crate::file::text::title;
 /// | table | keys |
 /// |---|---|
 /// | | `title` |
-/// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile); without a position a body is placed by a joint with one that has a place |
+/// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame, where three zeros are those of a point mass; or a shape with its middle in the centre of mass, from which the inertia follows, with `m` or a `density`, kg/m³: a `box` by its edges, a `cylinder` or a `capsule` by the `radius` and the `length` of the cylinder and its `axis`, by default the third, a `sphere` by its `radius`, m; a shape beside an inertia is for the page alone; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile); without a position a body is placed by a joint with one that has a place |
 /// | `gravity` | `g`, m/s²; `up`, in space |
-/// | `[[joint]]` | `name`, if programs are to reach it; `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
+/// | `[[joint]]` | `name`, by which programs reach it, by default `joint-1` and so on; `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
 /// | | where the joint starts, of a body without a `position`: `angle` and `rate` about the axis, `shift`, m, and `speed`, m/s, along it, of the second body relative to the first, zero by default |
 /// | | in a joint that turns: `damping`, N m s; `stiffness`, N m/rad, with the angle at `rest`; a motor's `torque` about the axis, N m; dry `friction`: its `torque` and the rate `below` which it is viscous. In a slider: `damping`, N s/m; `stiffness`, N/m, with the shift at `rest`; a `force`, N |
+/// | | `limits` of a pin or a slider: `from` and `to`, angles or shifts, and whether the run is to `stop` where the joint passes one of them. They aren't imposed but watched: each passing is an event with the joint's name |
 /// | `[[spring]]` | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
-/// | `run` | `duration`; `step`, of which the duration is a whole number; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
+/// | `[[event]]` | as for [one body](crate::SceneFile), with an `energy`, or a `column` of the table and its `value`: `upper_z`, `joint-1_angle` |
+/// | `run` | `duration`; `step`, of which the duration is a whole number; `method`: `step`, or a `composition` by its name, as for [one body](crate::SceneFile), of systems without friction; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
 /// | `picture` | `plane`: `xy`, `xz`, `yz`; by default the plane in which the motion is the widest |
 /// | `output` | `columns` that follow the time in a table, see [`Column`]; `every`: the number of steps from row to row |
+/// | `sweep` | as for [one body](crate::SceneFile): the key of a body, a joint or an event follows its name, `joint.elbow.damping` or `joint.joint-1.damping` |
 ///
 /// Joints may form loops. Other effects on several bodies need a program: [`liestep::methods::Multibody`].
 #[derive(Clone)]
@@ -45,15 +53,17 @@ pub struct System {
     pub(crate) bodies: Vec<SystemBody>,
     pub(crate) gravity: Option<(f64, Vector3<f64>)>,
     pub(crate) joints: Vec<Between<Joint>>,
-    /// One for each joint.
-    pub(crate) joint_names: Vec<JointName>,
+    pub(crate) joint_names: Vec<String>,
     pub(crate) springs: Vec<Between<Spring>>,
     pub(crate) step: f64,
     pub(crate) steps: u32,
+    pub(crate) method: Scheme,
     pub(crate) nearest: bool,
     pub(crate) picture: PlanePicture,
     pub(crate) output: Output,
     pub(crate) columns: Vec<Column>,
+    pub(crate) event: Vec<Event>,
+    pub(crate) sweep: Option<Box<Sweep<Self>>>,
     pub(crate) path: PathBuf,
     pub(crate) places: SystemPlaces,
 }
@@ -86,25 +96,13 @@ struct SystemTable {
     joint: Vec<Spanned<JointTable>>,
     #[serde(default)]
     spring: Vec<Spanned<SpringTable>>,
+    #[serde(default)]
+    event: Vec<Spanned<Event>>,
     run: RunTable,
     #[serde(default)]
     picture: PlanePicture,
     #[serde(default)]
     output: Output,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BodyTable {
-    name: Spanned<String>,
-    m: PositiveScalar<Mass>,
-    moments: Option<Moments>,
-    J_d: Option<NonstandardMoments>,
-    J: Option<InertiaRows>,
-    kinetic: Option<Spanned<Kinetic>>,
-    position: Option<Triple<Length>>,
-    moving: Option<Triple<Speed>>,
-    start: Option<Start>,
 }
 
 #[derive(Deserialize)]
@@ -127,10 +125,15 @@ struct SpringTable {
 #[serde(deny_unknown_fields)]
 struct RunTable {
     step: Spanned<PositiveScalar<Duration>>,
+    method: Option<Spanned<MethodTable>>,
     duration: Spanned<PositiveScalar<Duration>>,
     #[serde(default)]
     nearest: bool,
 }
+
+/// A method by its name.
+#[derive(Deserialize)]
+struct MethodTable(#[serde(deserialize_with = "scheme")] Scheme);
 
 impl System {
     /// Parses the system of a text; `path` appears in messages.
@@ -140,8 +143,23 @@ impl System {
     /// The first [`Mistake`] in it.
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self, Mistake> {
         let path = path.as_ref();
-        let table: SystemTable = toml::from_str(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
-        let place = |span: &Range<usize>| place_of(text, span);
+        let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
+        let sweep = document.get_mut().remove("sweep");
+        let lines = Lines::of(text);
+        let read = |document: &Document<'_>| Self::of_document(path, (text, &lines), document);
+        let mut system = read(&document)?;
+        if let Some(table) = sweep {
+            let located = |(span, message): SpanMessage| Mistake::at(path, lines.place(span.start), message);
+            system.sweep = Some(Box::new(sweep::read(&document, &table, &located, &read)?));
+        }
+        Ok(system)
+    }
+
+    /// The system of a document without a sweep.
+    fn of_document(path: &Path, (text, lines): (&str, &Lines<'_>), document: &Document<'_>) -> Result<Self, Mistake> {
+        let table = SystemTable::deserialize(Deserializer::from(document.clone()))
+            .map_err(|error| Mistake::of_toml(path, text, &error))?;
+        let place = |span: &Range<usize>| lines.place(span.start);
         let places = SystemPlaces {
             bodies: table.body.iter().map(|body| place(&body.span())).collect(),
             joints: table.joint.iter().map(|joint| place(&joint.span())).collect(),
@@ -149,6 +167,12 @@ impl System {
             pace: place(&table.run.step.span()),
         };
         of_table(table, path, places).map_err(|(span, message)| Mistake::at(path, place(&span), message))
+    }
+
+    /// The scenes of the file's sweep.
+    #[must_use]
+    pub fn sweep(&self) -> Option<&Sweep<Self>> {
+        self.sweep.as_deref()
     }
 
     /// The title of the scene.
@@ -165,13 +189,39 @@ impl System {
     /// The columns that follow the time in a table. The gap of pins has the unit `m, 1`.
     #[must_use]
     pub fn columns(&self) -> Vec<recording::Column> {
-        let listed = Column::listed(&self.columns, &self.names().collect::<Vec<_>>());
-        let unit = |column: recording::Column| {
-            // The gap combines a length with the cosines of axes.
-            let is_mixed = column.name == "gap" && self.has_cosines();
-            if is_mixed { recording::Column { unit: "m, 1".to_owned(), ..column } } else { column }
+        Column::listed(&self.columns)
+    }
+
+    /// All columns that a table can have.
+    pub(crate) fn all_columns(&self) -> Vec<Column> {
+        let joints = self.joint_names.iter().zip(&self.joints).map(|(name, joint)| (name.as_str(), joint.of.kind));
+        Column::of_system(&self.names().collect::<Vec<_>>(), &joints.collect::<Vec<_>>())
+    }
+
+    /// The names of the events, those of joints with limits after those of the file.
+    pub fn events(&self) -> impl Iterator<Item = &str> {
+        let of_joints = self.limited().map(|(joint, _)| self.joint_names[joint].as_str());
+        self.event.iter().map(|event| event.name.as_str()).chain(of_joints)
+    }
+
+    /// The numbers of the joints with limits, and the limits.
+    pub(crate) fn limited(&self) -> impl Iterator<Item = (usize, Limits)> {
+        self.joints.iter().enumerate().filter_map(|(number, joint)| Some((number, joint.of.limits?)))
+    }
+
+    /// Whether forces and torques of joints are asked for, by a column or by an event.
+    pub(crate) fn has_reactions(&self) -> bool {
+        let is_reaction = |column: &Column| ["force", "torque"].contains(&column.key());
+        let all = self.all_columns();
+        let is_seen = |place: usize| {
+            let mut parts = all.iter().filter(|column| is_reaction(column)).filter_map(Column::part);
+            parts.any(|part| part.contains(&place))
         };
-        listed.into_iter().map(|(column, _)| unit(column)).collect()
+        let places = self.event.iter().filter_map(|event| match event.quantity {
+            Quantity::Column(place, _) => Some(place),
+            _ => None,
+        });
+        self.columns.iter().any(is_reaction) || places.into_iter().any(is_seen)
     }
 
     /// A description of the parts and the steps, in words.
@@ -183,6 +233,7 @@ impl System {
         format!("{sum}, {steps} steps of {step} s, hΩ in rad: {}", turns.join(", "))
     }
 
+    /// Whether gaps of joints are cosines in part.
     pub(crate) fn has_cosines(&self) -> bool {
         self.joints.iter().any(|joint| joint.of.kind.has_cosines())
     }
@@ -204,10 +255,11 @@ impl System {
 
 fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<System, SpanMessage> {
     let (mut bodies, mut names): (Vec<SystemBody>, Vec<Range<usize>>) = Default::default();
-    let mut is_placed = Vec::new();
+    let (mut is_placed, mut numbered) = (Vec::new(), BTreeMap::new());
     for body in table.body {
-        let (body, name, has_place) = body_of(body)?;
-        if bodies.iter().any(|other| other.name == body.name) {
+        let span = body.span();
+        let (body, name, has_place) = body.into_inner().body(span)?;
+        if numbered.insert(body.name.clone(), bodies.len()).is_some() {
             return Err((name, format!("there are two bodies called `{}`", body.name)));
         }
         bodies.push(body);
@@ -218,13 +270,10 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         return Err((0..0, "a system has a body at least".to_owned()));
     }
     let called: Vec<&str> = bodies.iter().map(|body| body.name.as_str()).collect();
-    let columns = table.output.columns(&Column::of_several_bodies(), &["position", "quaternion", "energy", "gap"])?;
-    if let Some((body, name)) = name_twice(&columns, &called) {
-        let message = format!("two columns of the table would be called `{name}`: give the body another name");
-        return Err((names[body].clone(), message));
-    }
-    let joint_names = joint_names(&table.joint, &called)?;
-    let joints = table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), &bodies));
+    let columns = table.output.columns(&Column::of_system(&called, &[]), &DEFAULT)?;
+    name_twice(&columns).map_or(Ok(()), |name| Err(shared(&name, &called, &names)))?;
+    let joint_names = names_of_joints(&table.joint, &called)?;
+    let joints = table.joint.into_iter().map(|joint| joint_of(joint.into_inner(), (&bodies, &numbered)));
     let (joints, coordinates): (Vec<_>, Vec<_>) = joints.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
     let (placing, unplaced) = place(&mut bodies, &mut is_placed, &joints);
     if let Some(body) = unplaced {
@@ -240,7 +289,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     let springs = table.spring.into_iter().map(|spring| {
         let SpringTable { bodies: names, at, k, length } = spring.into_inner();
         let spring = Spring { k: k.value, length: length.value, at: at.map(|point| point.value) };
-        Ok(Between { bodies: numbers(&names, &bodies)?, of: spring })
+        Ok(Between { bodies: numbers(&names, (&bodies, &numbered))?, of: spring })
     });
     let springs = springs.collect::<Result<_, SpanMessage>>()?;
     let step = table.run.step.get_ref().value;
@@ -249,7 +298,8 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     if let Some(message) = fraction(step, duration) {
         return Err((table.run.duration.span(), message));
     }
-    Ok(System {
+    let method = table.run.method;
+    let mut system = System {
         title: table.title,
         bodies,
         gravity: table.gravity.map(|field| (field.g.value, field.up.0)),
@@ -258,104 +308,116 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         springs,
         step,
         steps,
+        method: Scheme::Step,
         nearest: table.run.nearest,
         picture: table.picture,
         output: table.output,
-        columns,
+        columns: Vec::new(),
+        event: Vec::new(),
+        sweep: None,
         path: path.to_owned(),
         places,
-    })
+    };
+    let all = system.all_columns();
+    system.columns = system.output.columns(&all, &DEFAULT)?;
+    name_twice(&system.columns)
+        .map_or(Ok(()), |name| Err(shared(&name, &system.names().collect::<Vec<_>>(), &names)))?;
+    if let Some(method) = method {
+        let (span, MethodTable(scheme)) = (method.span(), method.into_inner());
+        system.method = of_method(scheme, &system).map_err(|message| (span, message))?;
+    }
+    let quaternions = quaternions(&all);
+    // A quaternion has two signs, and no values that are passed.
+    let jumps = |place: usize| quaternions.iter().any(|start| (*start..start + 4).contains(&place));
+    for event in table.event {
+        let span = event.span();
+        let mut event = event.into_inner();
+        event.placed((&all, &jumps), Err(SEVERAL), &|| span.clone())?;
+        system.event.push(event);
+    }
+    Ok(system)
 }
 
-/// A name that two columns share, and the number of the body that one of them belongs to.
-fn name_twice(columns: &[Column], bodies: &[&str]) -> Option<(usize, String)> {
-    let all = Column::listed(columns, bodies);
-    all.iter().enumerate().find_map(|(number, (column, body))| {
-        let (_, other) = all[..number].iter().find(|(other, _)| other.name == column.name)?;
-        Some((body.or(*other)?, column.name.clone()))
-    })
-}
-
-fn is_plain(name: &str) -> bool {
-    !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter))
-}
-
-/// The names of joints, which are different from each other and from those of bodies.
-fn joint_names(joints: &[Spanned<JointTable>], bodies: &[&str]) -> Result<Vec<JointName>, SpanMessage> {
-    let mut names: Vec<JointName> = Vec::new();
-    for joint in joints {
-        let JointTable { name, bodies: between, .. } = joint.get_ref();
-        let is_swapped = between.get_ref()[1].get_ref() == SPACE;
-        if let Some(name) = name {
-            let own = name.get_ref();
-            let refuse = |message: String| Err((name.span(), message));
-            if !is_plain(own) {
-                return refuse("the `name` of a joint has letters, digits, - and _ only".to_owned());
-            }
-            if own == SPACE || bodies.contains(&own.as_str()) {
-                return refuse(format!("a body and a joint are called `{own}`"));
-            }
-            if names.iter().any(|other| other.name.as_ref() == Some(own)) {
-                return refuse(format!("there are two joints called `{own}`"));
+/// A method, or why the system can't have it.
+fn of_method(scheme: Scheme, system: &System) -> Result<Scheme, String> {
+    match scheme {
+        Scheme::Step => Ok(scheme),
+        Scheme::Composition(composition) if composition.base() != 2 => {
+            let (name, base) = (composition.name(), composition.base());
+            Err(format!("{name} composes a step of order {base}, and that of several bodies is of order 2"))
+        }
+        Scheme::Composition(_) => {
+            let has_friction = |joint: &Between<Joint>| joint.of.terms.damping.or(joint.of.terms.friction.map(|_| 0.0));
+            match system.joints.iter().position(|joint| has_friction(joint).is_some()) {
+                Some(joint) => Err(format!(
+                    "a composition has steps back, in which friction adds energy, and `{}` has some: leave one of both out",
+                    system.joint_names[joint]
+                )),
+                None => Ok(scheme),
             }
         }
-        names.push(JointName { name: name.as_ref().map(|name| name.get_ref().clone()), is_swapped });
+        _ => Err("several bodies have their own step, or a `composition` of it".to_owned()),
+    }
+}
+
+/// The columns of a table by default.
+const DEFAULT: [&str; 4] = ["position", "quaternion", "energy", "gap"];
+
+const SEVERAL: &str =
+    "only a single body has this quantity: of several an event has a `column` with a `value`, or an `energy`";
+
+/// The places of quaternions among the numbers of these columns.
+pub(crate) fn quaternions(all: &[Column]) -> Vec<usize> {
+    let parts = all.iter().filter(|column| column.key() == "quaternion").filter_map(Column::part);
+    parts.flat_map(|part| part.step_by(4)).collect()
+}
+
+/// The names of the joints, given or by their numbers from one, which are different from each other and from those of bodies.
+fn names_of_joints(joints: &[Spanned<JointTable>], bodies: &[&str]) -> Result<Vec<String>, SpanMessage> {
+    let mut taken: BTreeSet<String> = bodies.iter().map(|&body| body.to_owned()).chain([SPACE.to_owned()]).collect();
+    let mut names: Vec<String> = Vec::new();
+    for (number, joint) in joints.iter().enumerate() {
+        let (name, place) = match &joint.get_ref().name {
+            Some(name) => (name.get_ref().clone(), name.span()),
+            None => (format!("joint-{}", number + 1), joint.span()),
+        };
+        if !is_plain(&name) {
+            return Err((place, "the `name` of a joint has letters, digits, - and _ only".to_owned()));
+        }
+        if !taken.insert(name.clone()) {
+            let both = if names.contains(&name) { "there are two joints" } else { "a body and a joint are" };
+            return Err((place, format!("{both} called `{name}`")));
+        }
+        names.push(name);
     }
     Ok(names)
 }
 
-/// A body, the place of its name, and whether it has a place in space.
-fn body_of(body: Spanned<BodyTable>) -> Result<(SystemBody, Range<usize>, bool), SpanMessage> {
-    let span = body.span();
-    let BodyTable { name, m, moments, J_d, J, kinetic, position, moving, start } = body.into_inner();
-    // The name of a body is the prefix of its columns.
-    if !is_plain(name.get_ref()) {
-        return Err((name.span(), "the `name` of a body has letters, digits, - and _ only".to_owned()));
-    }
-    if name.get_ref() == SPACE {
-        return Err((name.span(), "`space` is what bodies move in; give the body another name".to_owned()));
-    }
-    let J = match (moments, J_d, J) {
-        (Some(Moments { J, .. }), None, None) | (None, None, Some(InertiaRows(J))) => J,
-        (None, Some(NonstandardMoments(J_d)), None) => NonstandardInertia::from(J_d).to_inertia(),
-        _ => return Err((span, INERTIA.to_owned())),
-    };
-    if let Some(kinetic) = kinetic.as_ref().filter(|kinetic| kinetic.get_ref().order() != 2) {
-        let message = "a body among several is `geodesic`, `rigid` or `cayley`: joints and springs are of second order";
-        return Err((kinetic.span(), message.to_owned()));
-    }
-    let kinetic = kinetic.map_or(Kinetic::Geodesic, Spanned::into_inner);
-    let has_place = position.is_some();
-    let wrong = match (has_place, start.is_some(), moving.is_some()) {
-        (true, false, _) => Some("a body with a `position` has a `start`, too: its attitude and angular velocity"),
-        (false, true, _) => Some("a body with a `start` has a `position`, too; one that joints place has neither"),
-        (false, false, true) => {
-            Some("a body that is `moving` has a `position` and a `start`; joints have `rate` and `speed`")
-        }
-        _ => None,
-    };
-    if let Some(message) = wrong {
-        return Err((name.span(), message.to_owned()));
-    }
-    let moving = moving.map_or_else(Vector3::zeros, |moving| moving.value);
-    let position = position.map_or_else(Vector3::zeros, |position| position.value);
-    let start = start.unwrap_or(Start { attitude: UnitQuaternion::identity(), velocity: Vector3::zeros() });
-    let place = name.span();
-    let body = SystemBody { name: name.into_inner(), m: m.value, J, kinetic, position, moving, start };
-    Ok((body, place, has_place))
+/// A name that two columns share.
+fn name_twice(columns: &[Column]) -> Option<String> {
+    let mut taken = BTreeSet::new();
+    Column::listed(columns).into_iter().map(|column| column.name).find(|name| !taken.insert(name.clone()))
 }
 
-/// The name of space among bodies.
-const SPACE: &str = "space";
+/// The mistake of the body whose columns share a name with others, at the place of its name.
+fn shared(name: &str, bodies: &[&str], names: &[Range<usize>]) -> SpanMessage {
+    let owns = |owner: &str| name.strip_prefix(owner).is_some_and(|rest| rest.starts_with('_'));
+    let body = bodies.iter().zip(names).rfind(|(body, _)| owns(body));
+    let (place, owner) = body.map_or((0..0, "joint"), |(_, place)| (place.clone(), "body"));
+    (place, format!("two columns of the table would be called `{name}`: give the {owner} another name"))
+}
+
+/// The bodies, and their numbers by name.
+type Named<'a> = (&'a [SystemBody], &'a BTreeMap<String, usize>);
 
 /// The numbers of two named bodies.
-fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], SpanMessage> {
+fn numbers(names: &Names, (bodies, numbered): Named<'_>) -> Result<[Option<usize>; 2], SpanMessage> {
     let mut numbers = [None; 2];
     for (number, name) in numbers.iter_mut().zip(names.get_ref()) {
         if name.get_ref() == SPACE {
             continue;
         }
-        *number = bodies.iter().position(|body| body.name == *name.get_ref());
+        *number = numbered.get(name.get_ref()).copied();
         if number.is_none() {
             let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
             let message = format!("unknown body `{}`, expected one of {}, `{SPACE}`", name.get_ref(), known.join(", "));
@@ -369,7 +431,7 @@ fn numbers(names: &Names, bodies: &[SystemBody]) -> Result<[Option<usize>; 2], S
 }
 
 /// The joint of two named bodies, and the place of its coordinates at the start. Space comes first.
-fn joint_of(joint: JointTable, bodies: &[SystemBody]) -> Result<(Between<Joint>, Option<Range<usize>>), SpanMessage> {
+fn joint_of(joint: JointTable, bodies: Named<'_>) -> Result<(Between<Joint>, Option<Range<usize>>), SpanMessage> {
     let mut between = numbers(&joint.bodies, bodies)?;
     let (is_swapped, coordinate) = (between[1].is_none(), joint.coordinate());
     if is_swapped {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::file::mistake::SpanMessage;
 
@@ -49,7 +49,21 @@ pub(crate) fn dotted(keys: &[Spanned<String>]) -> String {
     keys.iter().map(|key| key.get_ref().as_str()).collect::<Vec<_>>().join(".")
 }
 
-/// Sets the value of these keys, in new tables where they don't exist.
+/// The table among several of a key with this `name`; one without is called by the key and its number, as `joint-1`.
+fn called<'t, 'a>(entries: &'t mut DeArray<'a>, key: &str, name: &str) -> Option<&'t mut DeTable<'a>> {
+    let tables = entries.iter_mut().enumerate().filter_map(|(number, entry)| match entry.get_mut() {
+        DeValue::Table(table) => Some((number, table)),
+        _ => None,
+    });
+    let is_called = |(number, table): &(usize, &mut DeTable<'a>)| match table.get("name") {
+        Some(own) => own.get_ref().as_str() == Some(name),
+        None => name == format!("{key}-{}", number + 1),
+    };
+    tables.into_iter().find(is_called).map(|(_, table)| table)
+}
+
+/// Sets the value of these keys, in new tables where they don't exist. A table among several of one key is found
+/// by its name.
 pub(crate) fn set<'a>(
     table: &mut DeTable<'a>,
     keys: &[Spanned<String>],
@@ -64,6 +78,11 @@ pub(crate) fn set<'a>(
     let inner = table.entry(name()).or_insert_with(|| Spanned::new(key.span(), DeValue::Table(DeTable::new())));
     match inner.get_mut() {
         DeValue::Table(inner) => set(inner, rest, value),
+        DeValue::Array(entries) => {
+            let [name, rest @ ..] = rest else { return Ok(()) };
+            let unknown = || (name.span(), format!("no `{}` is called `{}`", key.get_ref(), name.get_ref()));
+            set(called(entries, key.get_ref(), name.get_ref()).ok_or_else(unknown)?, rest, value)
+        }
         _ => Err((key.span(), format!("`{}` isn't a table", key.get_ref()))),
     }
 }

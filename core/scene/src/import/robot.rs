@@ -1,6 +1,7 @@
 //! A robot of links and joints, as a scene of several bodies.
 
 use std::collections::{BTreeSet, HashMap};
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
@@ -40,6 +41,8 @@ pub(super) struct Joint {
     pub(super) damping: f64,
     /// N m, or N.
     pub(super) friction: f64,
+    /// The ends of its way, rad, or m.
+    pub(super) limits: Option<[f64; 2]>,
 }
 
 /// The kind of a joint, with its axis in the child's frame.
@@ -109,7 +112,10 @@ impl Robot {
             body(&mut text, group, &names[number], &self.joints);
         }
         for (number, group) in groups.iter().enumerate().filter(|(number, _)| is_there[*number]) {
-            let Some(arm) = group.arm else { continue };
+            let Some(arm) = group.arm.filter(|arm| !matches!(self.joints[arm.joint].connection, Connection::Free))
+            else {
+                continue;
+            };
             let above = if is_there[arm.parent] { Some(arm.parent) } else { None };
             let centre = above.map_or_else(Vector3::zeros, |above| groups[above].mass.centre);
             let above = above.map_or("space", |above| &names[above]);
@@ -263,7 +269,7 @@ impl Robot {
         (above, centre): (&str, Vector3<f64>),
         (below, own): (&str, Vector3<f64>),
     ) {
-        let Joint { name, connection, damping, friction, .. } = &self.joints[arm.joint];
+        let Joint { name, connection, damping, friction, limits, .. } = &self.joints[arm.joint];
         let (kind, axis, start) = match connection {
             Connection::Pin(axis) => ("pin", axis, "angle = 0\n"),
             Connection::Slider(axis) => ("slider", axis, "shift = 0\n"),
@@ -293,8 +299,24 @@ impl Robot {
         } else if *friction > 0.0 {
             let _ = writeln!(text, "friction = {{ torque = {}, below = {CREEP} }}", written(*friction));
         }
+        match (limits, kind) {
+            (Some([from, to]), "pin") if to - from >= TAU => {
+                self.remarks.push(format!("joint {name}: its limits are a turn apart or more, left out"));
+            }
+            (Some([from, to]), "pin" | "slider") => {
+                let _ = writeln!(text, "limits = {{ from = {}, to = {} }}", angle(*from, kind), angle(*to, kind));
+                self.remarks.push(format!("joint {name}: its limits are watched, not imposed"));
+            }
+            (Some(_), _) => self.remarks.push(format!("joint {name}: a {kind} has no limits")),
+            (None, _) => (),
+        }
         text.push('\n');
     }
+}
+
+/// A limit of a joint; angles of more than a turn have their unit.
+fn angle(limit: f64, kind: &str) -> String {
+    if kind == "pin" && limit.abs() > 6.0 { format!("\"{} rad\"", written(limit)) } else { written(limit) }
 }
 
 /// The table of a body. Joints place it, but for a root and for one that is free.

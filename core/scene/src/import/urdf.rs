@@ -142,7 +142,7 @@ fn joint(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Joint> {
             return Err((place(node), format!("the joint `{name}` has {found}, expected one of {known}")));
         }
     };
-    let (mut damping, mut friction) = (0.0, 0.0);
+    let (mut damping, mut friction, mut limits) = (0.0, 0.0, None);
     for other in node.children().filter(Node::is_element) {
         match other.tag_name().name() {
             "parent" | "child" | "origin" | "axis" => (),
@@ -151,7 +151,17 @@ fn joint(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Joint> {
                 friction = number(&other, "friction")?.unwrap_or(0.0);
             }
             "limit" if node.attribute("type") == Some("continuous") => (),
-            "limit" => remarks.push(format!("joint {name}: its limits aren't imposed")),
+            "limit" => {
+                let [lower, upper] = ["lower", "upper"].map(|key| number(&other, key));
+                let ends = [lower?.unwrap_or(0.0), upper?.unwrap_or(0.0)];
+                limits = Some(ends).filter(|[lower, upper]| lower < upper);
+                if limits.is_none() {
+                    remarks.push(format!("joint {name}: its limits leave it no way, left out"));
+                }
+                for key in ["effort", "velocity"].into_iter().filter(|key| other.attribute(*key).is_some()) {
+                    remarks.push(format!("joint {name}: `{key}` of its limit: no counterpart"));
+                }
+            }
             "mimic" => {
                 let follows = other.attribute("joint").unwrap_or("another");
                 remarks.push(format!("joint {name}: it moves by itself, and doesn't follow {follows}"));
@@ -160,5 +170,5 @@ fn joint(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Joint> {
         }
     }
     let origin = origin(node)?;
-    Ok(Joint { name, place: place(node), parent, child: child_link, origin, connection, damping, friction })
+    Ok(Joint { name, place: place(node), parent, child: child_link, origin, connection, damping, friction, limits })
 }

@@ -4,6 +4,7 @@ use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorq
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
 use liestep::methods::{Multibody, MultibodyStepper, Redundancy};
+use liestep::with::Scheme;
 use liestep::{NonstandardInertia, SO3, SetupError, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
@@ -40,6 +41,21 @@ pub(crate) struct HeavyBody {
     /// Acceleration of gravity, m/s².
     pub(crate) g: f64,
     pub(crate) up: Vector3<f64>,
+}
+
+/// A point mass with its weight.
+#[lagrangian(
+    group(d = R3),
+    advected(x = d.seen_from(space)),
+    l_d = m * d.norm_squared() / (2.0 * h) - 0.5 * h * m * g * (x + x + d).dot(&up),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct HeavyPoint {
+    /// Mass, kg.
+    m: f64,
+    /// Acceleration of gravity, m/s².
+    g: f64,
+    up: Vector3<f64>,
 }
 
 /// A spring between a point of one body and a point of another, which mustn't meet.
@@ -84,16 +100,11 @@ impl System {
         for body in &self.bodies {
             let is = |kinetic| f64::from(u8::from(body.kinetic == kinetic));
             let [rigid, geodesic, cayley] = [Kinetic::Rigid, Kinetic::Geodesic, Kinetic::Cayley].map(is);
-            system.body(HeavyBody {
-                J: body.J,
-                J_d: body.J.to_nonstandard(),
-                rigid,
-                geodesic,
-                cayley,
-                m: body.m,
-                g,
-                up,
-            });
+            let m = body.m;
+            match body.J {
+                Some(J) => system.body(HeavyBody { J, J_d: J.to_nonstandard(), rigid, geodesic, cayley, m, g, up }),
+                None => system.body(HeavyPoint { m, g, up }),
+            };
         }
         for &Between { bodies, of: Spring { k, length, at: [at_1, at_2] } } in &self.springs {
             if length == 0.0 {
@@ -109,7 +120,9 @@ impl System {
         }
         let places: Vec<_> = self.given().into_iter().map(|(place, _)| place).collect();
         let (system, left_out) = system.independent(&places)?;
-        Ok((system.stepper(self.step)?, left_out))
+        let stepper = system.stepper(self.step)?;
+        let stepper = if let Scheme::Composition(scheme) = self.method { stepper.composed(scheme)? } else { stepper };
+        Ok((stepper, left_out))
     }
 
     /// The file's initial configurations and velocities.

@@ -114,7 +114,7 @@ impl SceneFile {
 }
 
 /// The kind of event for a direction.
-fn kind(direction: Direction) -> recording::Event {
+pub(crate) fn kind(direction: Direction) -> recording::Event {
     match direction {
         Direction::Rising => recording::Event::rising(),
         Direction::Falling => recording::Event::falling(),
@@ -130,12 +130,24 @@ fn function<I: BodyIntegrator>(
 ) -> impl Fn(&Moment<'_, I>) -> f64 + Send + Sync + use<I> + 'static {
     let (axis, view) = (file.picture.axis.0, file.view());
     move |now| match quantity {
-        Quantity::Column(place, value) => sample(&view, now).numbers[place] - value,
         // The cosine is smooth at the vertical, unlike the angle.
         Quantity::Tilt(angle) => angle.cos() - (I::attitude(now).as_matrix() * axis).z,
         Quantity::Speed(speed) => I::rate(now.velocity()).norm_squared() - speed * speed,
-        Quantity::Energy(energy) => now.energy() - energy,
         Quantity::Velocity(component, rate) => I::rate(now.velocity())[component] - rate,
         Quantity::Axis(component, part) => (I::attitude(now).as_matrix() * axis)[component] - part,
+        Quantity::Energy(_) | Quantity::Column(..) => of_any(quantity, now, || sample(&view, now)),
+    }
+}
+
+/// The function of a quantity that all scenes have; NaN for one of a single body.
+pub(crate) fn of_any<I: Integrator<Scalar = f64>>(
+    quantity: Quantity,
+    now: &Moment<'_, I>,
+    sample: impl Fn() -> Sample,
+) -> f64 {
+    match quantity {
+        Quantity::Energy(energy) => now.energy() - energy,
+        Quantity::Column(place, value) => sample().numbers[place] - value,
+        _ => f64::NAN,
     }
 }

@@ -6,6 +6,7 @@ pub(crate) mod course;
 pub(crate) mod data;
 pub(crate) mod devices;
 mod ends;
+mod events;
 pub(crate) mod make;
 mod motors;
 mod nearest;

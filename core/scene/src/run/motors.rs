@@ -3,14 +3,13 @@
 use liestep::motion::AnyMotion;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::file::joint::{Joint, Kind};
+use crate::file::joint::{Joint, Kind, Pose};
 use crate::file::part::Between;
 use crate::file::system::System;
 
 /// The motion of a body. That of space is at rest in the origin.
 struct BodyMotion {
-    attitude: Matrix3<f64>,
-    position: Vector3<f64>,
+    pose: Pose,
     /// Angular velocity in the axes of the body, and velocity in space.
     turning: Vector3<f64>,
     moving: Vector3<f64>,
@@ -24,14 +23,14 @@ fn motion_of(body: Option<usize>, attitude: &[f64], velocity: &[f64]) -> BodyMot
     let at = |numbers: &[f64], place: usize| numbers.get(place).copied().unwrap_or(f64::NAN);
     let Some(body) = body else {
         let none = Vector3::zeros();
-        return BodyMotion { attitude: Matrix3::identity(), position: none, turning: none, moving: none };
+        return BodyMotion { pose: (Matrix3::identity(), none), turning: none, moving: none };
     };
     let vector =
         |numbers: &[f64], first: usize, step: usize| Vector3::from_fn(|row, _| at(numbers, first + step * row));
+    let rows = Matrix3::from_fn(|row, column| at(attitude, ENTRIES * body + 3 * row + column));
     BodyMotion {
-        attitude: Matrix3::from_fn(|row, column| at(attitude, ENTRIES * body + 3 * row + column)),
-        // The last column of a matrix with four rows.
-        position: vector(attitude, ENTRIES * body + 9 + 3, 4),
+        // The place is the last column of a matrix with four rows.
+        pose: (rows, vector(attitude, ENTRIES * body + 9 + 3, 4)),
         turning: vector(velocity, 6 * body, 1),
         moving: vector(velocity, 6 * body + 3, 1),
     }
@@ -41,45 +40,36 @@ impl System {
     /// The number of the joint of this name.
     #[must_use]
     pub fn joint(&self, name: &str) -> Option<usize> {
-        self.joint_names.iter().position(|own| own.name.as_deref() == Some(name))
+        self.joint_names.iter().position(|own| own == name)
     }
 
-    /// The names of the joints that have one.
+    /// The names of the joints, given or by their numbers from one: `joint-1`.
     pub fn joint_names(&self) -> impl Iterator<Item = &str> {
-        self.joint_names.iter().filter_map(|own| own.name.as_deref())
-    }
-
-    /// A joint, with the sign of its angle or shift in the file's order of its bodies.
-    fn with_sign(&self, joint: usize) -> Option<(&Between<Joint>, f64)> {
-        let is_swapped = self.joint_names.get(joint)?.is_swapped;
-        Some((self.joints.get(joint)?, if is_swapped { -1.0 } else { 1.0 }))
+        self.joint_names.iter().map(String::as_str)
     }
 
     /// The coordinate of a joint, the angle about its axis in rad or the shift along it in m, and its rate, from a state and its
     /// velocity; `None` if the joint has several such coordinates, or no axis. An angle is between −π and π.
     #[must_use]
     pub fn coordinate(&self, joint: usize, motion: &AnyMotion, velocity: &[f64]) -> Option<[f64; 2]> {
-        let (&Between { bodies, of: Joint { kind, at, axes, zero, .. } }, sign) = self.with_sign(joint)?;
+        let &Between { bodies, of } = self.joints.get(joint)?;
         let [above, below] = bodies.map(|body| motion_of(body, motion.attitude(), velocity));
-        let (axis, relative) = (axes[0], above.attitude.tr_mul(&below.attitude));
-        if matches!(kind, Kind::Pin | Kind::Plane) {
-            let turn = relative * zero.transpose();
-            let sine = axis.dot(&Vector3::new(
-                turn[(2, 1)] - turn[(1, 2)],
-                turn[(0, 2)] - turn[(2, 0)],
-                turn[(1, 0)] - turn[(0, 1)],
-            ));
-            let rate = axis.dot(&(relative * below.turning - above.turning));
-            return Some([sign * sine.atan2(turn.trace() - 1.0), sign * rate]);
-        }
-        if kind != Kind::Slider {
-            return None;
-        }
-        let arm = below.attitude * at[1];
-        let from = above.attitude.tr_mul(&(below.position + arm - above.position));
-        let moving = below.moving + below.attitude * below.turning.cross(&at[1]) - above.moving;
-        let rate = axis.dot(&(above.attitude.tr_mul(&moving) - above.turning.cross(&from)));
-        Some([sign * axis.dot(&(from - at[0])), sign * rate])
+        let ([angle, shift], axis) = (of.coordinates([&above.pose, &below.pose]), of.axes[0]);
+        let ((attitude, at), (of_below, to)) = (above.pose, below.pose);
+        let numbers = match of.kind {
+            Kind::Pin | Kind::Plane => {
+                let turning = attitude.tr_mul(&of_below) * below.turning;
+                [angle, axis.dot(&(turning - above.turning))]
+            }
+            Kind::Slider => {
+                let arm = of_below * of.at[1];
+                let from = attitude.tr_mul(&(to + arm - at));
+                let moving = below.moving + of_below * below.turning.cross(&of.at[1]) - above.moving;
+                [shift, axis.dot(&(attitude.tr_mul(&moving) - above.turning.cross(&from)))]
+            }
+            _ => return None,
+        };
+        Some(numbers.map(|number| of.sign * number))
     }
 
     /// Adds the forces on all bodies of a motor in a joint, as [`Propagator::step_forced`](liestep::motion::Propagator::step_forced)
@@ -90,8 +80,8 @@ impl System {
     /// The reason why this joint has no motor.
     pub fn drive(&self, joint: usize, effort: f64, forces: &mut [f64]) -> Result<(), &'static str> {
         let none = "isn't the number of a joint";
-        let (&Between { bodies: [above, below], of: Joint { kind, at, axes, zero, .. } }, sign) =
-            self.with_sign(joint).ok_or(none)?;
+        let &Between { bodies: [above, below], of: Joint { kind, at, axes, zero, sign, .. } } =
+            self.joints.get(joint).ok_or(none)?;
         let (axis, effort) = (axes[0], sign * effort);
         let mut add = |body: Option<usize>, first: usize, part: Vector3<f64>| {
             let places = body.into_iter().flat_map(|body| 6 * body + first..6 * body + first + 3);

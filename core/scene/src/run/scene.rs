@@ -3,13 +3,12 @@
 use std::error::Error;
 
 use liestep::motion::Moment;
-use liestep::recording::{self, Csv, Sink};
+use liestep::recording::Sink;
 use liestep::with::Scheme;
 use liestep::{SetupError, StepError};
 
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
-use crate::file::event::Event;
 use crate::file::mistake::Mistake;
 use crate::file::pointing::at_the_end;
 use crate::file::quantity::short;
@@ -166,45 +165,13 @@ impl SceneFile {
     ///
     /// None, as it is written to memory.
     pub fn event_table(&self, run: &Run) -> Result<String, Box<dyn Error + Send + Sync>> {
-        let mut rows = Csv::new(Vec::new());
-        let time = recording::Column { name: "t".to_owned(), unit: "s".to_owned() };
-        rows.begin(&std::iter::once(time).chain(self.listed()).collect::<Vec<_>>())?;
-        let first = run.samples().first();
-        let mut before = first.cloned();
-        for happening in run.happenings() {
-            let mut now = happening.sample.clone();
-            if let Some(before) = &before {
-                now.follow(before);
-            }
-            let numbers = Column::row(self.columns(), first.unwrap_or(&now), &now);
-            rows.write(&std::iter::once(now.time).chain(numbers).collect::<Vec<_>>())?;
-            before = Some(now);
-        }
-        let rows = String::from_utf8(rows.into_inner()?)?;
-        let mut rows = rows.lines();
-        let mut text = format!("event,rising,{}\n", rows.next().unwrap_or_default());
-        for (happening, row) in run.happenings().iter().zip(rows) {
-            let name = self.event.get(happening.event).map_or("", |event| event.name.as_str());
-            text.extend([name, if happening.rising { ",1," } else { ",0," }, row, "\n"]);
-        }
-        Ok(text)
+        run.event_table(self.columns(), self.events())
     }
 
     /// Lines about the start and the end of a run, its events, and the table of the choice if there was one.
     #[must_use]
     pub fn summary(&self, run: &Run) -> String {
-        let line = |(number, event): (usize, &Event)| {
-            let mut times = run.times(number);
-            let (first, others) = (times.next(), times.count());
-            let when = first.map_or_else(String::new, |first| format!(", first at t = {first} s"));
-            let ending = if run.ending == Some(number) { ", which ended the run" } else { "" };
-            let often = match others + usize::from(first.is_some()) {
-                1 => "once".to_owned(),
-                count => format!("{count} times"),
-            };
-            format!("\n  {}: {often}{when}{ending}", event.name)
-        };
-        let events: String = self.event.iter().enumerate().map(line).collect();
+        let events = run.events_in_words(self.events());
         let unit = if self.group.is_rotation() { " kg m²/s" } else { "" };
         let norm = |sample: &Sample| sample.numbers[self.group.in_space()].iter().map(|part| part * part).sum::<f64>();
         let ends = run.summary(&self.title, &self.sum(), self.group.unit_of_energy(), |first, last| {

@@ -156,9 +156,10 @@ impl System {
     #[must_use]
     pub fn end_error(&self, run: &Run) -> String {
         let again = |steps, step| {
-            let second = Self { step, steps, ..self.clone() };
+            let mut second = Self { step, steps, event: Vec::new(), columns: Vec::new(), ..self.clone() };
+            second.joints.iter_mut().for_each(|joint| joint.of.limits = None);
             second.simulate(u64::from(steps), Listeners { progress: &mut |_| (), table: None })
         };
-        line(run, 2, None, again).unwrap_or_default()
+        line(run, self.method.order(), None, again).unwrap_or_default()
     }
 }

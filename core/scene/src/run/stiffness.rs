@@ -6,7 +6,7 @@ use liestep::mechanics::Inertia;
 use liestep::methods::{Constraint as _, Place};
 use nalgebra::{DMatrix, Dyn, Matrix3, Matrix3xX, SymmetricEigen, Vector3};
 
-use crate::file::part::Between;
+use crate::file::part::{Between, SystemBody};
 use crate::file::quantity::{round, short};
 use crate::file::system::{Spring, System};
 use crate::run::make::Stop;
@@ -73,6 +73,12 @@ pub(crate) fn eigen(matrix: DMatrix<f64>) -> Option<SymmetricEigen<f64, Dyn>> {
 pub(crate) fn inverse_root(J: &Inertia) -> Matrix3<f64> {
     let SymmetricEigen { eigenvectors, eigenvalues } = J.as_matrix().symmetric_eigen();
     eigenvectors * Matrix3::from_diagonal(&eigenvalues.map(|moment| moment.sqrt().recip())) * eigenvectors.transpose()
+}
+
+/// `J^{-1/2}` of a body; a point mass counts as a ball of a millimetre, whose turns are fast enough to follow its joints.
+fn inverse_root_of(body: &SystemBody) -> Matrix3<f64> {
+    let of_ball = || Matrix3::identity() / (4e-7 * body.m).sqrt();
+    body.J.as_ref().map_or_else(of_ball, inverse_root)
 }
 
 /// The index of the largest entry, and the entry.
@@ -147,7 +153,7 @@ impl System {
     fn moved(&self, places: &[(SO3, R3)], body: Option<usize>, point: &Vector3<f64>) -> Matrix3xX<f64> {
         let mut moved = Matrix3xX::zeros(6 * self.bodies.len());
         if let Some(body) = body {
-            let turned = places[body].0.as_matrix() * -point.cross_matrix() * inverse_root(&self.bodies[body].J);
+            let turned = places[body].0.as_matrix() * -point.cross_matrix() * inverse_root_of(&self.bodies[body]);
             moved.fixed_columns_mut::<3>(6 * body).copy_from(&turned);
             let shifted = Matrix3::identity() / self.bodies[body].m.sqrt();
             moved.fixed_columns_mut::<3>(6 * body + 3).copy_from(&shifted);
@@ -168,7 +174,7 @@ impl System {
             let slopes = joint.of.constraint().slope(&place(joint.bodies[0]), &place(joint.bodies[1]));
             for (body, slope) in joint.bodies.into_iter().zip(slopes) {
                 let Some(body) = body else { continue };
-                let turned = slope.turn * places[body].0.as_matrix() * inverse_root(&self.bodies[body].J);
+                let turned = slope.turn * places[body].0.as_matrix() * inverse_root_of(&self.bodies[body]);
                 held.fixed_columns_mut::<3>(6 * body).copy_from(&turned);
                 held.fixed_columns_mut::<3>(6 * body + 3).copy_from(&(slope.shift / self.bodies[body].m.sqrt()));
             }

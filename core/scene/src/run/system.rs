@@ -1,25 +1,92 @@
 //! The run of a system of several bodies.
 
+use std::error::Error;
+use std::sync::Arc;
+
 use liestep::methods::{MultibodyStepper, Redundancy};
 use liestep::motion::{AnyStepper, Moment};
-use liestep::recording::Sink;
+use liestep::recording::{self, Sink};
 use liestep::{SO3, SetupError, StepError};
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use crate::file::body::Kinetic;
+use crate::file::joint::{Joint, Limits, Pose};
 use crate::file::mistake::Mistake;
-use crate::file::part::SystemBody;
+use crate::file::part::{Between, SystemBody};
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::system::System;
 use crate::run::course::MemberStart;
-use crate::run::make::{Course, Listeners, Note, Run, Stop, fast_turn, make, told};
+use crate::run::course::{kind, of_any};
+use crate::run::make::{Course, EventFunction, Listeners, Note, Run, Stop, fast_turn, make, told};
 
 /// The quantity that violates a constraint, for messages.
 const GAP: &str = "lengths in m and cosines of axes together";
 
-/// The sample of the bodies at this moment.
-fn sample(stepper: &MultibodyStepper, now: &Moment<'_, AnyStepper>) -> Sample {
+fn pose(stepper: &MultibodyStepper, state: &[f64], body: Option<usize>) -> Pose {
+    let Some(body) = body else { return (Matrix3::identity(), Vector3::zeros()) };
+    let (attitude, place) = stepper.attitude(state, body);
+    (*attitude.as_matrix(), place.translation())
+}
+
+/// The angle and the shift of a joint, see [`Joint::coordinates`].
+fn coordinates(joint: &Between<Joint>, stepper: &MultibodyStepper, state: &[f64]) -> [f64; 2] {
+    let [above, below] = joint.bodies.map(|body| pose(stepper, state, body));
+    joint.of.coordinates([&above, &below])
+}
+
+/// The function that rises through zero where a joint passes one of its limits.
+fn beyond(joint: &Between<Joint>, limits: Limits, stepper: &MultibodyStepper, state: &[f64]) -> f64 {
+    let [from, to] = limits.ends;
+    let (middle, half, [angle, shift]) = ((from + to) * 0.5, (to - from) * 0.5, coordinates(joint, stepper, state));
+    // Both are smooth at the middle, and the cosine at a whole turn, unlike the angle.
+    if joint.of.kind.turns_about_axis() {
+        half.cos() - (angle - middle).cos()
+    } else {
+        (shift - middle).powi(2) - half * half
+    }
+}
+
+/// The bodies at this moment, with the numbers of all columns; forces and torques of joints, for which a step is made, are
+/// computed on request.
+fn sample(system: &System, stepper: &MultibodyStepper, now: &Moment<'_, AnyStepper>, has_reactions: bool) -> Sample {
+    let mut sample = bodies_at(stepper, now);
+    let Sample { bodies, energy, momentum, angular_momentum, gap, .. } = &sample;
+    let mut numbers: Vec<f64> = Vec::new();
+    numbers.extend(bodies.iter().flat_map(|body| &body.position));
+    let first = numbers.len();
+    numbers.extend(bodies.iter().flat_map(|body| body.quaternion));
+    numbers.extend(bodies.iter().flat_map(|body| &body.velocity));
+    numbers.extend(bodies.iter().flat_map(|body| &body.moving));
+    numbers.push(*energy);
+    numbers.extend(momentum.iter().chain(angular_momentum));
+    numbers.push(*gap);
+    let coordinates: Vec<_> = system
+        .joints
+        .iter()
+        .map(|joint| (joint.of.kind, joint.of.sign, coordinates(joint, stepper, now.numbers())))
+        .collect();
+    let turning = coordinates.iter().filter(|(kind, ..)| kind.turns_about_axis());
+    numbers.extend(turning.map(|(_, sign, [angle, _])| sign * angle));
+    let shifting = coordinates.iter().filter(|(kind, ..)| kind.shifts_along_axis());
+    numbers.extend(shifting.map(|(_, sign, [_, shift])| sign * shift));
+    if has_reactions {
+        let none = || vec![[Vector3::repeat(f64::NAN); 2]; system.joints.len()];
+        let forces = stepper.joint_forces(now.numbers()).unwrap_or_else(|_| none());
+        numbers.extend(forces.iter().flat_map(|[force, _]| force));
+        for (joint, [force, torque]) in system.joints.iter().zip(&forces) {
+            // About the joint's point, which the bodies share in most kinds.
+            let arm = pose(stepper, now.numbers(), joint.bodies[1]).0 * joint.of.at[1];
+            numbers.extend(&(torque - arm.cross(force)));
+        }
+    }
+    sample.quaternions = (first..first + 4 * sample.bodies.len()).step_by(4).collect();
+    sample.numbers = numbers;
+    sample
+}
+
+/// The state of the bodies at this moment.
+fn bodies_at(stepper: &MultibodyStepper, now: &Moment<'_, AnyStepper>) -> Sample {
     let (momenta, velocities) = (now.momentum(), now.velocity());
     let (mut momentum, mut angular_momentum) = (Vector3::zeros(), Vector3::zeros());
     let body = |body: usize| {
@@ -109,12 +176,33 @@ impl System {
         let state = any.state_of(&state).ok_or_else(|| Stop::Other("a state of another system".to_owned()))?;
         let (stride, columns) = (self.output.stride(steps), self.columns.as_slice());
         let course = Course { steps, end: f64::INFINITY, stride, columns, listed: self.columns() };
-        let mut run = make(&any, state, course, |now| sample(&stepper, now), Vec::new(), listeners)?;
+        let has_reactions = self.has_reactions();
+        let sample = |now: &Moment<'_, AnyStepper>| sample(self, &stepper, now, has_reactions);
+        let mut run = make(&any, state, course, sample, self.watches(&stepper), listeners)?;
         let of_springs = of_springs.map(|(spring, why)| (self.places.springs[spring], why));
         let left_out = left_out.into_iter().map(|one| (self.of_joint(one.joint), left_out_of(&one)));
         let notes = left_out.chain(of_springs).chain(self.fast_turns());
         run.notes = notes.map(|(place, why)| Mistake::of_run(&self.path, place, why)).collect();
         Ok(run)
+    }
+
+    /// The events that a run detects: those of the file, and each joint's passing of its limits.
+    fn watches(&self, stepper: &MultibodyStepper) -> Vec<(recording::Event, EventFunction<AnyStepper>)> {
+        let (system, has_reactions) = (Arc::new(self.clone()), self.has_reactions());
+        let ended = |event: recording::Event, stops| if stops { event.terminal() } else { event };
+        let of_file = self.event.iter().map(|event| -> (_, EventFunction<_>) {
+            let (quantity, system, stepper) = (event.quantity, Arc::clone(&system), stepper.clone());
+            let function = move |now: &Moment<'_, AnyStepper>| {
+                of_any(quantity, now, || sample(&system, &stepper, now, has_reactions))
+            };
+            (ended(kind(event.direction), event.stops), Box::new(function))
+        });
+        let of_joints = self.limited().map(|(number, limits)| -> (_, EventFunction<_>) {
+            let (joint, stepper) = (self.joints[number], stepper.clone());
+            let function = move |now: &Moment<'_, AnyStepper>| beyond(&joint, limits, &stepper, now.numbers());
+            (ended(recording::Event::rising(), limits.stops), Box::new(function))
+        });
+        of_file.chain(of_joints).collect()
     }
 
     /// Notes about bodies that turn too far in a step of (3.13).
@@ -148,15 +236,25 @@ impl System {
     /// Lines about the start and the end of a run.
     #[must_use]
     pub fn summary(&self, run: &Run) -> String {
+        let events = run.events_in_words(self.events());
         let ends = run.summary(&self.title, &self.sum(), "J", |_, _| {
             if self.joints.is_empty() {
-                return String::new();
+                return events;
             }
             let widest = run.samples().iter().map(|sample| sample.gap).fold(0.0, f64::max);
             let unit = if self.has_cosines() { "(m and cosines)" } else { "m" };
-            format!(", joints open by {widest:.1e} {unit} at most")
+            format!(", joints open by {widest:.1e} {unit} at most{events}")
         });
         ends + &self.changes(run)
+    }
+
+    /// The events of a run as comma-separated values, see [`SceneFile::event_table`](crate::SceneFile::event_table).
+    ///
+    /// # Errors
+    ///
+    /// None, as it is written to memory.
+    pub fn event_table(&self, run: &Run) -> Result<String, Box<dyn Error + Send + Sync>> {
+        run.event_table(&self.columns, self.events())
     }
 
     /// The place in the file of the joint with this number.

@@ -1,9 +1,12 @@
 "use strict";
-// Plays `motion`: times in s, attitudes as unit quaternions w, x, y, z, body to space, and charts over time.
+// Plays `motion`: times in s, bodies with attitudes as unit quaternions w, x, y, z, body to space, and charts over time. Several
+// bodies have positions, too; a single one turns about a point.
 window.addEventListener("error", event => { document.documentElement.dataset.error = event.message; });
 
 const decode = text => new Float32Array(Uint8Array.from(atob(text), letter => letter.charCodeAt(0)).buffer);
-const times = decode(motion.times), attitudes = decode(motion.attitudes), frames = times.length;
+const times = decode(motion.times), frames = times.length;
+for (const body of motion.bodies) { body.attitudes = decode(body.attitudes); body.positions = decode(body.positions); }
+const [single] = motion.bodies, several = single && single.positions.length > 0;
 const start = times[0], end = times[frames - 1];
 for (const chart of motion.charts) for (const line of chart.lines) line.values = decode(line.values);
 
@@ -17,7 +20,9 @@ const overLines = (pen, text, x, y) => {
 // Where seconds would have five digits, time is told in hours.
 const [UNIT, UNIT_NAME] = end - start >= 1e4 ? [3600, "h"] : [1, "s"];
 
-const COLOURS = ["#0072b2", "#e69f00", "#009e73"], PATH = "#cc79a7", INK = "#2d2d2d", FAINT = "#d8dce2";
+const COLOURS = ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#2d2d2d", "#b8a800"], PATH = "#cc79a7", INK = "#2d2d2d", FAINT = "#d8dce2";
+// The most ways that are drawn, and the most names.
+const MOST_PATHS = 16, MOST_NAMES = 12;
 // Of a drum or a box, so that a turn is seen.
 const SHADES = [[86, 146, 190], [226, 232, 238]];
 
@@ -33,17 +38,25 @@ function frameAt(time) {
   while (low < high) { const middle = (low + high + 1) >> 1; if (times[middle] <= time) low = middle; else high = middle - 1; }
   return low;
 }
-const quaternion = frame => attitudes.subarray(4 * frame, 4 * frame + 4);
+const quaternion = (body, frame) => body.attitudes.subarray(4 * frame, 4 * frame + 4);
+// The part of the way from a frame to the next that has passed at a time.
+const partAt = (time, frame) => Math.min(1, Math.max(0, (time - times[frame]) / (times[frame + 1] - times[frame])));
 // Between two frames the shorter turn from the one to the other.
-function attitudeAt(time) {
-  const frame = frameAt(time), a = quaternion(frame);
+function attitudeAt(body, time) {
+  const frame = frameAt(time), a = quaternion(body, frame);
   if (frame + 1 >= frames) return a;
-  const b = quaternion(frame + 1), part = Math.min(1, Math.max(0, (time - times[frame]) / (times[frame + 1] - times[frame])));
+  const b = quaternion(body, frame + 1), part = partAt(time, frame);
   const cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3], sign = cosine < 0 ? -1 : 1;
   const angle = Math.acos(Math.min(1, Math.abs(cosine)));
   const [left, right] = angle < 1e-6 ? [1 - part, part] : [(1 - part) * angle, part * angle].map(x => Math.sin(x) / Math.sin(angle));
   const q = a.map((x, k) => left * x + sign * right * b[k]), size = Math.hypot(...q);
   return q.map(x => x / size);
+}
+
+const position = (body, frame) => [...body.positions.subarray(3 * frame, 3 * frame + 3)];
+function positionAt(body, time) {
+  const frame = frameAt(time), a = position(body, frame);
+  return frame + 1 >= frames ? a : add(a, add(position(body, frame + 1), a, -1), partAt(time, frame));
 }
 
 // A canvas that fills its place, in pixels of the page.
@@ -65,37 +78,61 @@ function dragged(canvas, move) {
   canvas.addEventListener("pointermove", event => { if (event.buttons & 1) move(event.movementX, event.movementY, event); });
 }
 
-// The body, its axes and the path of the axis that is followed.
-const tips = Array.from({ length: frames }, (_, frame) => turned(quaternion(frame), motion.axis));
-const camera = { azimuth: 0.6, elevation: 0.45, zoom: 1 };
+// The path of the axis that is followed, of a single body.
+const tips = single && !several ? Array.from({ length: frames }, (_, frame) => turned(quaternion(single, frame), motion.axis)) : [];
+const usualCamera = { azimuth: 0.6, elevation: 0.45, zoom: 1 }, camera = { ...usualCamera };
 let now = start;
 
-function corners() {
-  const [a, b, c] = motion.sides, middle = motion.middle;
-  if (motion.drum === null) {
+// The faces of a box, or of a surface of revolution with the heights and radii of its profile.
+function facesOf({ sides, round, profile, middle }) {
+  if (round === null) {
+    const [a, b, c] = sides;
     const face = (n, u, v, shade) => ({ shade, points: [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([s, t]) => add(add(add(middle, n), u, s), v, t)) });
     const both = (n, u, v, shade) => [face(n, u, v, shade), face(n.map(x => -x), v, u, shade + 1)];
     return [...both(a, b, c, 0), ...both(b, c, a, 0), ...both(c, a, b, 0)];
   }
-  const n = motion.sides[motion.drum], u = motion.sides[(motion.drum + 1) % 3], v = motion.sides[(motion.drum + 2) % 3];
-  const rim = (turn, side) => add(add(add(middle, n, side), u, Math.cos(turn)), v, Math.sin(turn));
-  const faces = [];
+  const n = sides[round], u = sides[(round + 1) % 3], v = sides[(round + 2) % 3], faces = [];
+  const rim = (turn, [height, radius]) => add(add(add(middle, n, height), u, radius * Math.cos(turn)), v, radius * Math.sin(turn));
   for (let k = 0; k < 32; k++) {
     const [from, to] = [k, k + 1].map(x => x * Math.PI / 16), shade = Math.floor(k / 8);
-    faces.push({ shade, plain: true, points: [rim(from, -1), rim(to, -1), rim(to, 1), rim(from, 1)] });
-    for (const side of [1, -1]) faces.push({ shade, plain: true, points: [add(middle, n, side), rim(from, side), rim(to, side)] });
+    for (let ring = 0; ring + 1 < profile.length; ring++) {
+      const [low, high] = [profile[ring], profile[ring + 1]];
+      const points = low[1] === 0 ? [rim(0, low), rim(from, high), rim(to, high)] : [rim(from, low), rim(to, low), ...(high[1] === 0 ? [rim(0, high)] : [rim(to, high), rim(from, high)])];
+      faces.push({ shade, plain: true, points });
+    }
   }
   return faces;
 }
-const FACES = corners();
+for (const body of motion.bodies) body.faces = facesOf(body);
+
+// Several bodies are drawn around the middle of their places, which fill the view.
+const room = { middle: [0, 0, 0], size: 1 };
+if (several) {
+  motion.bodies.forEach((body, number) => {
+    const own = [1, 3, 5].map(k => parseInt(COLOURS[number % COLOURS.length].slice(k, k + 2), 16));
+    body.colours = [own.map(x => x + (255 - x) * 0.25), own.map(x => x + (255 - x) * 0.7)];
+  });
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (const body of motion.bodies) {
+    const reach = Math.max(...body.sides.map(side => Math.hypot(...side)), 0);
+    for (let k = 0; k < body.positions.length; k++) {
+      low[k % 3] = Math.min(low[k % 3], body.positions[k] - reach); high[k % 3] = Math.max(high[k % 3], body.positions[k] + reach);
+    }
+  }
+  const [x, y] = [0, 1].map(k => high[k] - low[k]);
+  room.middle = add(low, high).map(k => k / 2); room.size = Math.hypot(...add(high, low, -1)) / 2 || 1;
+  // A motion in a plane is seen from its side.
+  usualCamera.azimuth = x > y ? -1.2 : 0.4; usualCamera.elevation = 0.3; Object.assign(camera, usualCamera);
+}
+const inRoom = p => add(p, room.middle, -1).map(x => x / room.size);
 
 // Other groups than that of a body have charts alone.
-document.getElementById("view").hidden = attitudes.length === 0;
+document.getElementById("view").hidden = !single;
 const view = canvasIn(document.getElementById("view"), (pen, width, height) => {
-  if (attitudes.length === 0) return;
+  if (!single) return;
   const [sa, ca, se, ce] = [Math.sin(camera.azimuth), Math.cos(camera.azimuth), Math.sin(camera.elevation), Math.cos(camera.elevation)];
   const right = [-sa, ca, 0], up = [-se * ca, -se * sa, ce], towards = [ce * ca, ce * sa, se];
-  const size = 0.36 * Math.min(width, height) * camera.zoom, centre = [width / 2, height / 2];
+  const size = (several ? 0.48 : 0.36) * Math.min(width, height) * camera.zoom, centre = [width / 2, height / 2];
   const place = p => [centre[0] + size * dot(right, p), centre[1] - size * dot(up, p)];
   const line = (points, colour, thickness) => {
     pen.beginPath();
@@ -106,6 +143,56 @@ const view = canvasIn(document.getElementById("view"), (pen, width, height) => {
     const [x, y] = place(p);
     pen.fillStyle = colour; pen.font = letters(12); overLines(pen, text, x + 4, y - 4);
   };
+  // The faces of bodies that look here, the nearest last. Each body is convex, so that these are all that is seen of one.
+  const draw = bodies => {
+    const seen = bodies.flatMap(({ body, attitude, at }) => body.faces.map(({ points, shade, plain }) => {
+      const corners = points.map(p => at(turned(attitude, p))), middle = at(turned(attitude, body.middle));
+      let normal = cross(add(corners[1], corners[0], -1), add(corners[2], corners[0], -1));
+      const length = Math.hypot(...normal), outwards = dot(normal, add(corners[0], middle, -1)) < 0 ? -1 : 1;
+      normal = normal.map(x => outwards * x / length);
+      const depth = corners.reduce((sum, p) => sum + dot(towards, p), 0) / corners.length;
+      return { corners, shade, plain, normal, depth, colours: body.colours || SHADES, looks: length > 0 && dot(normal, towards) > 0 };
+    })).filter(face => face.looks);
+    if (bodies.length > 1) seen.sort((one, other) => one.depth - other.depth);
+    for (const { corners, shade, plain, normal, colours } of seen) {
+      const light = 0.62 + 0.38 * Math.max(0, dot(normal, [0.3, -0.2, 0.93])), colour = colours[shade % 2].map(x => Math.round(x * light));
+      pen.beginPath();
+      corners.forEach((p, k) => { const [x, y] = place(p); if (k) pen.lineTo(x, y); else pen.moveTo(x, y); });
+      pen.closePath();
+      pen.fillStyle = pen.strokeStyle = `rgb(${colour})`; pen.lineWidth = 0.7; pen.fill();
+      if (!plain) pen.strokeStyle = "rgba(45, 45, 45, 0.5)";
+      pen.stroke();
+    }
+  };
+  if (several) {
+    const frame = frameAt(now), origin = inRoom([0, 0, 0]);
+    if (Math.hypot(...origin) < 1.5) ["e₁", "e₂", "e₃"].forEach((text, k) => {
+      const e = add(origin, [0, 1, 2].map(j => j === k ? 0.35 : 0));
+      line([origin, e], "#aab1ba", 1); name(text, e, "#7a828c");
+    });
+    const shown = motion.bodies.map((body, number) => {
+      const attitude = attitudeAt(body, now), here = positionAt(body, now), colour = COLOURS[number % COLOURS.length];
+      // The way of the centre of mass until now, for as many bodies as are told from each other.
+      if (number < MOST_PATHS) {
+        const stride = Math.max(1, Math.ceil(frame / 600)), points = [];
+        for (let k = 0; k <= frame; k += stride) points.push(inRoom(position(body, k)));
+        pen.globalAlpha = 0.6; line([...points, inRoom(here)], colour, 1); pen.globalAlpha = 1;
+      }
+      return { body, attitude, at: p => inRoom(add(here, p)) };
+    });
+    // Rods from centres of mass to joints, within or beside the bodies.
+    for (const [number, point] of motion.rods) {
+      const { attitude, at } = shown[number];
+      line([at([0, 0, 0]), at(turned(attitude, point))], INK, 2);
+    }
+    draw(shown);
+    for (const [number, point] of motion.rods) {
+      const { attitude, at } = shown[number], [x, y] = place(at(turned(attitude, point)));
+      pen.beginPath(); pen.arc(x, y, 2.5 * large, 0, 7); pen.fillStyle = INK; pen.fill();
+    }
+    if (shown.length <= MOST_NAMES) shown.forEach(({ body, at }, number) => name(body.name, at([0, 0, 0]), COLOURS[number % COLOURS.length]));
+    return;
+  }
   // Space: its axes, and the sphere on which the path is.
   pen.beginPath(); pen.arc(centre[0], centre[1], size, 0, 7); pen.strokeStyle = FAINT; pen.lineWidth = 1; pen.stroke();
   const circle = (u, v) => line(Array.from({ length: 65 }, (_, k) => add(u.map(x => x * Math.cos(k * Math.PI / 32)), v, Math.sin(k * Math.PI / 32))), FAINT, 1);
@@ -115,7 +202,7 @@ const view = canvasIn(document.getElementById("view"), (pen, width, height) => {
     line([[0, 0, 0], e], "#aab1ba", 1); name(text, e, "#7a828c");
   });
   // The path until now; what is older is fainter, and what is behind the sphere too.
-  const last = frameAt(now), first = Math.max(0, last - 3000), attitude = attitudeAt(now), tip = turned(attitude, motion.axis);
+  const last = frameAt(now), first = Math.max(0, last - 3000), attitude = attitudeAt(single, now), middle = turned(attitude, single.middle), tip = turned(attitude, motion.axis);
   const chunks = 60, chunk = Math.max(1, Math.ceil((last - first) / chunks));
   for (let k = first; k < last; k += chunk) {
     const to = Math.min(last, k + chunk), points = tips.slice(k, to + 1);
@@ -124,26 +211,10 @@ const view = canvasIn(document.getElementById("view"), (pen, width, height) => {
   }
   pen.globalAlpha = 1;
   line([tips[last], tip], PATH, 1.6);
-  // The body: a convex one, so that the faces that look here are all that is seen.
-  const faces = () => FACES.forEach(({ points, shade, plain }) => {
-    const seen = points.map(p => turned(attitude, p)), middle = turned(attitude, motion.middle);
-    let normal = cross(add(seen[1], seen[0], -1), add(seen[2], seen[0], -1));
-    const length = Math.hypot(...normal), outwards = dot(normal, add(seen[0], middle, -1)) < 0 ? -1 : 1;
-    if (length === 0) return;
-    normal = normal.map(x => outwards * x / length);
-    if (dot(normal, towards) <= 0) return;
-    const light = 0.62 + 0.38 * Math.max(0, dot(normal, [0.3, -0.2, 0.93])), colour = SHADES[shade % 2].map(x => Math.round(x * light));
-    pen.beginPath();
-    seen.forEach((p, k) => { const [x, y] = place(p); if (k) pen.lineTo(x, y); else pen.moveTo(x, y); });
-    pen.closePath();
-    pen.fillStyle = pen.strokeStyle = `rgb(${colour})`; pen.lineWidth = 0.7; pen.fill();
-    if (!plain) pen.strokeStyle = "rgba(45, 45, 45, 0.5)";
-    pen.stroke();
-  });
   // From the pivot to the body and from the body to the tip, before or behind it.
-  const stem = () => { line([[0, 0, 0], turned(attitude, motion.middle)], INK, 2.5); };
+  const stem = () => { line([[0, 0, 0], middle], INK, 2.5); };
   const pointer = () => {
-    line([turned(attitude, motion.middle), tip], INK, 1.5);
+    line([middle, tip], INK, 1.5);
     const [x, y] = place(tip);
     pen.beginPath(); pen.arc(x, y, 4, 0, 7); pen.fillStyle = PATH; pen.fill();
   };
@@ -151,10 +222,10 @@ const view = canvasIn(document.getElementById("view"), (pen, width, height) => {
     const e = turned(attitude, [0, 1, 2].map(j => j === k ? 0.85 : 0));
     line([[0, 0, 0], e], COLOURS[k], 2); name(text, e, COLOURS[k]);
   });
-  const behind = dot(towards, turned(attitude, motion.middle)) < 0;
+  const behind = dot(towards, middle) < 0;
   if (!behind) stem();
   if (dot(towards, tip) < 0) pointer();
-  faces();
+  draw([{ body: single, attitude, at: p => p }]);
   if (behind) stem();
   axes();
   if (dot(towards, tip) >= 0) pointer();
@@ -169,7 +240,7 @@ view.canvas.addEventListener("wheel", event => {
   camera.zoom = Math.max(0.2, Math.min(20, camera.zoom * Math.exp(-event.deltaY * 0.001)));
   view.draw();
 }, { passive: false });
-view.canvas.addEventListener("dblclick", () => { Object.assign(camera, { azimuth: 0.6, elevation: 0.45, zoom: 1 }); view.draw(); });
+view.canvas.addEventListener("dblclick", () => { Object.assign(camera, usualCamera); view.draw(); });
 
 // Charts share one stretch of time.
 const stretch = { from: start, to: end > start ? end : start + 1 };
@@ -206,7 +277,7 @@ const charts = motion.charts.map(chart => {
     const shownNow = chart.lines.map((line, number) => {
       const value = line.values[frame], size = Math.abs(value);
       const shown = chart.logarithmic || (size > 0 && size < 1e-2) || size >= 1e5 ? value.toExponential(1) : Number(value.toPrecision(3));
-      return [(chart.lines.length > 1 ? line.name + " " : "") + String(shown).replace(/-/g, "−"), COLOURS[number % 3]];
+      return [(chart.lines.length > 1 ? line.name + " " : "") + String(shown).replace(/-/g, "−"), COLOURS[number % COLOURS.length]];
     });
     pen.font = letters(12);
     const needed = shownNow.reduce((sum, [text]) => sum + pen.measureText(text).width + 12, pen.measureText(title).width + 12);
@@ -244,7 +315,7 @@ const charts = motion.charts.map(chart => {
         if (column && column.x === x) { column.least = Math.min(column.least, y); column.most = Math.max(column.most, y); column.exit = y; }
         else curve.push({ x, enter: y, least: y, most: y, exit: y });
       }
-      pen.strokeStyle = pen.fillStyle = COLOURS[number % 3]; pen.lineWidth = 1.3 * large;
+      pen.strokeStyle = pen.fillStyle = COLOURS[number % COLOURS.length]; pen.lineWidth = 1.3 * large;
       for (const curve of curves) {
         // Where a curve goes to and fro within a few pixels, its strokes would make a pattern that isn't there: a band is drawn.
         pen.beginPath();

@@ -8,19 +8,21 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use crate::file::column::Column;
 use crate::file::mistake::Mistake;
 use crate::file::quantity::short;
-use crate::file::sample::Sample;
+use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
+use crate::file::system::System;
 use crate::run::make::{Happening, Run};
-use crate::show::page::{Chart, Figure, Page};
+use crate::show::page::{Chart, Figure, Page, ShownBody};
 
 /// A motion, with recorded quantities over time.
 #[derive(Clone, Debug)]
 pub struct Recording {
     title: String,
     about: String,
-    figure: Figure,
+    axis: Vector3<f64>,
+    bodies: Vec<ShownBody>,
+    rods: Vec<(usize, Vector3<f64>)>,
     times: Vec<f64>,
-    attitudes: Vec<UnitQuaternion<f64>>,
     charts: Vec<Chart>,
     events: Vec<(f64, String)>,
 }
@@ -115,20 +117,16 @@ impl Recording {
         if let Some([x, y, z]) = all(&Column::VELOCITY).as_deref() {
             charts.push(rates([x.clone(), y.clone(), z.clone()]));
         }
-        let figure = Figure::of(&Matrix3::identity(), None, &Vector3::z());
+        let bodies = vec![single(Figure::of(&Matrix3::identity(), None), attitudes)];
         let (title, about) = (title.to_owned(), about.to_owned());
-        Ok(Self { title, about, figure, times, attitudes, charts, events: Vec::new() })
+        Ok(Self { title, about, axis: Vector3::z(), bodies, rods: Vec::new(), times, charts, events: Vec::new() })
     }
 
     fn of(scene: &SceneFile, run: &Run) -> Self {
         let samples = run.samples();
         let collect = |value: &dyn Fn(&Sample) -> f64| samples.iter().map(value).collect::<Vec<_>>();
-        let attitude = |sample: &Sample| {
-            let [w, x, y, z] = sample.bodies.first()?.quaternion;
-            Some(UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z)))
-        };
         // None on a group without a body.
-        let attitudes: Vec<_> = samples.iter().filter_map(attitude).collect();
+        let attitudes: Vec<_> = samples.iter().filter_map(|sample| sample.bodies.first()).map(attitude).collect();
         let (axis, arm) = (scene.picture.axis.0, scene.gravity.map(|gravity| gravity.rho.value));
         let energy = energy_error(&collect(&|sample| sample.energy));
         let charts = if scene.group.is_rotation() {
@@ -152,27 +150,113 @@ impl Recording {
                 chart("Momentum in space", "spatial-momentum"),
             ]
         };
+        let figure = Figure::of(&scene.inertia().unwrap_or_else(Matrix3::identity), arm);
         let event = |happening: &Happening| {
             scene.event.get(happening.event).map(|event| (happening.sample.time, event.name.clone()))
         };
         Self {
             title: scene.title.clone(),
             about: format!("{}, {} steps of {} s{}", scene.sum(), run.steps(), short(run.step()), run.average),
-            figure: Figure::of(&scene.inertia().unwrap_or_else(Matrix3::identity), arm, &axis),
+            axis,
+            bodies: if attitudes.is_empty() { Vec::new() } else { vec![single(figure, attitudes)] },
+            rods: Vec::new(),
             times: collect(&|sample| sample.time),
-            attitudes,
             charts,
             events: run.happenings().iter().filter_map(event).collect(),
         }
     }
 
-    /// One page that plays the motion in a browser without loading anything: the body, the path of its axis in space,
-    /// and the recorded quantities over time. On another group than SO(3) it has the quantities alone.
+    fn of_system(system: &System, run: &Run) -> Self {
+        let samples = run.samples();
+        let positions = |body: usize| samples.iter().map(|sample| sample.bodies[body].position).collect::<Vec<_>>();
+        let attitudes = |body: usize| samples.iter().map(|sample| attitude(&sample.bodies[body])).collect::<Vec<_>>();
+        // A point mass is a ball that is seen beside the arms of joints.
+        let arms = system.joints.iter().flat_map(|joint| joint.of.at).map(|at| at.norm());
+        let point = 0.08 * arms.fold(0.0, f64::max).max(1e-3);
+        let bodies = system.bodies.iter().enumerate().map(|(number, body)| {
+            let by_mass = body.J.as_ref().map(|J| J.as_matrix() / body.m);
+            let figure = Figure::among_several(body.shape.as_ref(), by_mass, point);
+            ShownBody { name: body.name.clone(), figure, attitudes: attitudes(number), positions: positions(number) }
+        });
+        let rod = |body: Option<usize>, at: Vector3<f64>| Some((body?, at)).filter(|(_, at)| at.norm() > 0.0);
+        let rods = system.joints.iter().flat_map(|joint| [0, 1].map(|side| rod(joint.bodies[side], joint.of.at[side])));
+        let names: Vec<_> = system.events().collect();
+        let event = |happening: &Happening| Some((happening.sample.time, (*names.get(happening.event)?).to_owned()));
+        let (title, about) = (system.title.clone(), system.about_run(run));
+        Self {
+            title,
+            about,
+            axis: Vector3::z(),
+            bodies: bodies.collect(),
+            rods: rods.flatten().collect(),
+            times: samples.iter().map(|sample| sample.time).collect(),
+            charts: charts_of_system(system, samples),
+            events: run.happenings().iter().filter_map(event).collect(),
+        }
+    }
+
+    /// One page that plays the motion in a browser without loading anything: the body and the path of its axis in space, or
+    /// several bodies and the ways of their centres of mass, and the recorded quantities over time. On another group than SO(3)
+    /// it has the quantities alone.
     #[must_use]
     pub fn page(&self) -> String {
-        let Self { title, about, figure, times, attitudes, charts, events } = self;
-        Page { title, about, figure, times, attitudes, charts, events }.to_string()
+        let Self { title, about, axis, bodies, rods, times, charts, events } = self;
+        Page { title, about, axis, bodies, rods, times, charts, events }.to_string()
     }
+}
+
+impl System {
+    /// The page of a run of this system, see [`Recording::page`].
+    #[must_use]
+    pub fn page(&self, run: &Run) -> String {
+        Recording::of_system(self, run).page()
+    }
+
+    /// The parts and the steps of a run, in words.
+    fn about_run(&self, run: &Run) -> String {
+        format!("{}, {} steps of {} s", self.sum(), run.steps(), short(run.step()))
+    }
+}
+
+/// Most curves of a chart of several bodies.
+const MOST_CURVES: usize = 8;
+
+/// Angles and shifts of joints, or the turns of bodies without joints, the energy, and how far joints are open.
+fn charts_of_system(system: &System, samples: &[Sample]) -> Vec<Chart> {
+    let columns = system.all_columns();
+    let of_joints = |key: &str, title, unit, factor: f64| {
+        let column = columns.iter().find(|column| column.key() == key)?;
+        let places = column.names().filter_map(|name| Some((name.to_owned(), column.place(name)?)));
+        let values = |place: usize| samples.iter().map(|sample| sample.numbers[place] * factor).collect();
+        let lines: Vec<_> = places.take(MOST_CURVES).map(|(name, place)| (name, values(place))).collect();
+        (!lines.is_empty()).then(|| Chart::linear(title, unit, lines))
+    };
+    let joints = [
+        of_joints("angle", "Angles of joints", "°", 1.0_f64.to_degrees()),
+        of_joints("shift", "Shifts of joints", "m", 1.0),
+    ];
+    let mut charts: Vec<_> = joints.into_iter().flatten().collect();
+    if charts.is_empty() {
+        let rate = |body: usize| samples.iter().map(|sample| sample.bodies[body].velocity.norm()).collect();
+        let lines = system.names().enumerate().take(MOST_CURVES).map(|(body, name)| (name.to_owned(), rate(body)));
+        charts.push(Chart::linear("Angular velocities of bodies", "rad/s", lines.collect()));
+    }
+    charts.push(energy_error(&samples.iter().map(|sample| sample.energy).collect::<Vec<_>>()));
+    if !system.joints.is_empty() {
+        let gaps = samples.iter().map(|sample| sample.gap).collect();
+        charts.push(Chart::logarithmic("Gaps of joints", "m", vec![("gap".to_owned(), gaps)]));
+    }
+    charts
+}
+
+/// A body that turns about a point.
+fn single(figure: Figure, attitudes: Vec<UnitQuaternion<f64>>) -> ShownBody {
+    ShownBody { name: String::new(), figure, attitudes, positions: Vec::new() }
+}
+
+fn attitude(body: &BodySample) -> UnitQuaternion<f64> {
+    let [w, x, y, z] = body.quaternion;
+    UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))
 }
 
 impl SceneFile {

@@ -19,6 +19,7 @@
 //! The unknowns of Newton's iteration are half the coordinates `y` of `F` and the multipliers. The residual is affine
 //! in the multipliers, so they need no initial guess from the last step.
 
+mod composed;
 mod constraint;
 mod couplings;
 mod elimination;
@@ -29,6 +30,7 @@ mod joint;
 mod newton;
 mod nodes;
 mod part;
+mod point_mass;
 mod propagator;
 mod redundancy;
 mod start;

@@ -26,6 +26,14 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// above two millions, where chains in a close pass have some thousand.
 const ROUNDING: (f64, f64) = (1e-14, 1.0 / 16.0);
 
+/// The longest distance of a solution from the guess, relative to the unknowns, at which it continues the motion whatever
+/// the sign of the determinant; as a square.
+///
+/// The sign changes where a linkage passes its change point, along which increments are smooth in time: the guess, by up to
+/// eight of them, is off by some millionth. A strut's solution on its other side is farther from the guess than the unknowns
+/// are long.
+const CONTINUED: f64 = 1e-6;
+
 /// The squared lengths of the turn and of the shift.
 fn squares(of: &Vector6<f64>) -> Vector2<f64> {
     let (turn, shift) = parts(of);
@@ -152,10 +160,19 @@ impl<'a> Problem<'a> {
 
     fn is_wanted(&self) -> bool {
         let equations = &self.work.equations;
-        self.turned_too_far().is_none()
-            && equations.wrong_body().is_none()
-            && equations.reversed().is_none()
-            && equations.redundant(&self.stepper.tree).is_none()
+        let is_regular = || equations.reversed().is_none() && equations.redundant(&self.stepper.tree).is_none();
+        self.turned_too_far().is_none() && equations.wrong_body().is_none() && (is_regular() || self.is_continued())
+    }
+
+    /// Whether the solution is next to the guess. The functions of joints are independent at the start of each step, and the
+    /// projection finds out whether they are at its end.
+    fn is_continued(&self) -> bool {
+        let Workspace { guess, half, .. } = &*self.work;
+        let length = |of: Vector6<f64>| squares(&of).dot(&self.weights());
+        let (distance, size) = guess.iter().zip(half).fold((0.0, 0.0), |(distance, size), (guess, half)| {
+            (distance + length(half - guess), size + length(*half))
+        });
+        distance <= size * CONTINUED
     }
 
     fn turned_too_far(&self) -> Option<usize> {
@@ -165,6 +182,7 @@ impl<'a> Problem<'a> {
 
     /// Solves from the guess in `half`; if that fails from the velocity, and then from rest with shortened updates.
     pub(super) fn solve(&mut self) -> Result<u32, StepError> {
+        self.work.guess.copy_from_slice(&self.work.half);
         let (mut spent, is_solved) = self.attempt(MAX_ITERATIONS, f64::INFINITY);
         if is_solved {
             return Ok(spent);

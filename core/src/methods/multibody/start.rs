@@ -50,7 +50,7 @@ impl MultibodyStepper {
         if !is_finite(momenta) {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
-        self.check_inertias(|body| attitudes[body])?;
+        self.check_inertias(attitudes)?;
         self.check_coupled_inertia(attitudes)?;
         let mut state = self.offsets.zeros();
         self.offsets.write(&mut state, attitudes, momenta);
@@ -59,6 +59,7 @@ impl MultibodyStepper {
             return Err(SetupError::NonFinite { what: "velocity of the momentum" });
         }
         self.check_start(attitudes, momenta)?;
+        self.check_symmetry(&state)?;
         Ok(state.into())
     }
 

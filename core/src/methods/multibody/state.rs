@@ -18,30 +18,36 @@ const ATTITUDE: usize = 9 + 16;
 /// in the guess.
 const DIFFERENCES: usize = 7;
 
-/// The layout of the states of a number of bodies.
-pub(super) fn layout(bodies: usize) -> Layout {
+/// The layout of the states of a number of bodies, with a memory for each stage of a step.
+pub(super) fn layout(bodies: usize, stages: usize) -> Layout {
     let of_body = |body: usize| {
         let kinds = [FactorKind::Rotation, FactorKind::Translation(4)];
         (1..).zip(kinds).map(move |(place, kind)| Factor::of(kind, 3).at(2 * body + place))
     };
-    let memory = 6 * bodies * (2 + DIFFERENCES) + 1;
+    let memory = stages * memory(bodies);
     Layout { factors: (0..bodies).flat_map(of_body).collect(), advected: Vec::new(), memory }
+}
+
+/// The length of the memory of a stage.
+fn memory(bodies: usize) -> usize {
+    6 * bodies * (2 + DIFFERENCES) + 1
 }
 
 /// The places of a state's numbers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Offsets {
     bodies: usize,
+    stages: usize,
 }
 
 impl Offsets {
-    pub(super) fn of(bodies: usize) -> Self {
-        Self { bodies }
+    pub(super) fn of(bodies: usize, stages: usize) -> Self {
+        Self { bodies, stages }
     }
 
     /// The number of entries.
     pub(super) fn length(self) -> usize {
-        self.memory().end + 1
+        self.memory_of(self.stages).start + 1
     }
 
     /// The number of entries of all attitudes.
@@ -49,9 +55,10 @@ impl Offsets {
         ATTITUDE * self.bodies
     }
 
-    fn memory(self) -> Range<usize> {
-        let start = (ATTITUDE + 6) * self.bodies;
-        start..start + 6 * self.bodies * (2 + DIFFERENCES) + 1
+    /// The memory of a stage.
+    pub(super) fn memory_of(self, stage: usize) -> Range<usize> {
+        let start = (ATTITUDE + 6) * self.bodies + stage * memory(self.bodies);
+        start..start + memory(self.bodies)
     }
 
     /// A state of zeros.
@@ -76,14 +83,14 @@ impl Offsets {
         }
     }
 
-    /// The guess of a body's half increment.
+    /// The guess of a body's half increment in the first stage.
     pub(super) fn guess(self, state: &[f64], body: usize) -> Vector6<f64> {
-        Vector6::from_column_slice(&state[self.memory().start + 6 * (self.bodies + body)..][..6])
+        Vector6::from_column_slice(&state[self.memory_of(0).start + 6 * (self.bodies + body)..][..6])
     }
 
-    /// The memory before the first step, from an estimate of the half increments.
-    pub(super) fn begin(self, state: &mut [f64], halves: &[Vector6<f64>]) {
-        let memory = &mut state[self.memory()];
+    /// The memory of a stage before the first step, from an estimate of the half increments.
+    pub(super) fn begin(self, state: &mut [f64], stage: usize, halves: &[Vector6<f64>]) {
+        let memory = &mut state[self.memory_of(stage)];
         memory.fill(0.0);
         for both in memory.chunks_mut(6 * self.bodies).take(2) {
             for (entries, half) in both.chunks_mut(6).zip(halves) {
@@ -92,12 +99,12 @@ impl Offsets {
         }
     }
 
-    /// Extrapolates the guess, by the polynomial through the last increments: the value `y + ∇ y + ∇² y + …`. If an
+    /// Extrapolates the guess of the first stage, by the polynomial through the last increments: the value `y + ∇ y + ∇² y + …`. If an
     /// increment is `far` from the identity, it is the guess itself. The estimate before the first step isn't used.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // a few
     pub(super) fn follow(self, state: &mut [f64], halves: &[Vector6<f64>], is_far: bool) {
         let (is_first, all) = (self.steps(state) == 0.0, 6 * self.bodies);
-        let memory = &mut state[self.memory()];
+        let memory = &mut state[self.memory_of(0)];
         let known = memory.last().map_or(0, |known| (*known as usize).min(DIFFERENCES + 1));
         let (lasts, rest) = memory.split_at_mut(all);
         let (guesses, differences) = rest.split_at_mut(all);

@@ -34,6 +34,9 @@ impl MultibodyStepper {
             offsets.set_steps(state, steps + 1.0);
             return Ok(StepReport::of(0));
         }
+        if let Some(stages) = &self.stages {
+            return self.composed_step(stages, state, work, forces);
+        }
         work.fit(self.bodies(), self.tree.couplings.len());
         work.equations.fit(self.joints(), &self.tree);
         let is_due = steps % STEPS_BETWEEN_CHECKS == 0.0;

@@ -1,10 +1,11 @@
 //! The stepper of a system of bodies.
 
 use alloc::string::String;
+use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 roots!();
 
@@ -12,13 +13,15 @@ use super::constraint::Place;
 use super::couplings::{Coupling, couplings};
 use super::equations::{gap, gap_of_all};
 use super::graph::{Joint, Tree};
+use super::point_mass::is_point_mass;
 use super::state::{Offsets, body_at, layout};
 use super::system::{Multibody, ends};
 use super::terms::{BodyTerm, space};
 use super::workspace::with_workspace;
-use super::{Body, place};
+use super::{Body, parts, place};
 use crate::error::{SetupError, StepError};
 use crate::mechanics::SceneVisitor;
+use crate::methods::CompositionScheme;
 use crate::motion::Layout;
 
 /// The stepper of a [`Multibody`] system: a [`Propagator`](crate::motion::Propagator) whose states are slices of numbers.
@@ -56,8 +59,25 @@ pub struct MultibodyStepper {
     pub(super) free: Tree,
     /// The radius of gyration of each body, m, by which rotations are compared with translations.
     pub(super) lengths: Vec<f64>,
+    /// Whether a body has no velocity without its joints.
+    pub(super) has_point_masses: bool,
+    /// The stages of a composition.
+    pub(super) stages: Option<Arc<Stages>>,
     pub(super) layout: Layout,
     pub(super) offsets: Offsets,
+}
+
+/// The stages of a composition, each with its share of the step.
+pub(super) struct Stages {
+    pub(super) scheme: CompositionScheme,
+    pub(super) steppers: Vec<(f64, MultibodyStepper)>,
+}
+
+impl Stages {
+    /// The shares of the stages.
+    pub(super) fn gammas(&self) -> impl Iterator<Item = f64> + '_ {
+        self.steppers.iter().map(|(gamma, _)| *gamma)
+    }
 }
 
 impl core::fmt::Debug for MultibodyStepper {
@@ -87,7 +107,7 @@ impl Multibody {
             })?;
         }
         self.pairs.iter().try_for_each(|(_, term)| term.validate())?;
-        MultibodyStepper::of(self, h)
+        MultibodyStepper::of(self.with_point_masses(), h)
     }
 }
 
@@ -109,11 +129,26 @@ impl MultibodyStepper {
             system.joints.iter().enumerate().filter(|(_, joined)| is_reduced(joined)).map(|(k, _)| k).collect();
         let place = |body: usize| system.terms.partition_point(|(of, _)| *of < body);
         let ranges = (0..system.bodies).map(|body| place(body)..place(body + 1)).collect();
-        let (layout, offsets) = (layout(system.bodies), Offsets::of(system.bodies));
-        let mut stepper =
-            Self { h, system, ranges, tree, reduced, couplings, free, lengths: Vec::new(), layout, offsets };
-        stepper.check_inertias(|_| space())?;
-        stepper.lengths = (0..stepper.bodies()).map(|body| length(&stepper.at_rest(body, &space()).2)).collect();
+        let (layout, offsets, stages) = (layout(system.bodies, 1), Offsets::of(system.bodies, 1), None);
+        let (lengths, has_point_masses) = (Vec::new(), false);
+        let mut stepper = Self {
+            h,
+            system,
+            ranges,
+            tree,
+            reduced,
+            couplings,
+            free,
+            lengths,
+            has_point_masses,
+            stages,
+            layout,
+            offsets,
+        };
+        let at_origin = alloc::vec![space(); stepper.bodies()];
+        stepper.check_inertias(&at_origin)?;
+        stepper.has_point_masses = (0..stepper.bodies()).any(|body| is_point_mass(&stepper.at_rest(body, &space()).2));
+        stepper.lengths = stepper.limit(&at_origin).matrices.iter().map(length).collect();
         // Some constants aren't finite for any step.
         if h != 0.0 && !stepper.system.refolded(h).is_finite() && !stepper.system.is_finite() {
             return Err(SetupError::NonFiniteConstant);
@@ -167,6 +202,10 @@ impl MultibodyStepper {
             visitor.parameter("body above", number(joined.above));
             visitor.parameter("body below", number(Some(joined.below)));
             joined.functions.describe(&mut |name, value| visitor.parameter(name, value));
+        }
+        if let Some(stages) = &self.stages {
+            visitor.term(stages.scheme.name());
+            stages.gammas().for_each(|gamma| visitor.parameter("gamma", gamma));
         }
     }
 
@@ -337,6 +376,27 @@ impl MultibodyStepper {
         Ok(forces)
     }
 
+    /// The forces of the joints on their bodies below in the step from this state, N, and their torques about the origins of
+    /// these bodies, N m, both in the axes of space: the sums of [`reactions`](Self::reactions) along the gradients.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`](Self::step).
+    pub fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+        let places: Vec<_> = self.attitudes(state).iter().map(place).collect();
+        let axes = Matrix3::identity();
+        let force = |(joined, multipliers): (&Joint, Vector6<f64>)| {
+            let (mut unused, mut slopes) = (Matrix6::zeros(), Matrix6::zeros());
+            let at = [joined.above.map_or(&Place::SPACE, |above| &places[above]), &places[joined.below]];
+            joined.functions.slopes(at, [None, Some(&axes)], [&mut unused, &mut slopes]);
+            let rows = joined.functions.rows();
+            let sum = (0..rows).fold(Vector6::zeros(), |sum, row| sum + slopes.column(row) * multipliers[row]);
+            let (torque, force) = parts(&sum);
+            [force, torque]
+        };
+        Ok(self.joints().iter().zip(self.reactions(state)?).map(force).collect())
+    }
+
     /// The configurations of both ends of a term between two bodies.
     pub(super) fn ends<'a>(&self, pair: usize, all: &'a [Body], space: &'a Body) -> [&'a Body; 2] {
         ends(&self.system.pairs[pair].0, all, space)
@@ -348,7 +408,8 @@ impl MultibodyStepper {
     ///
     /// [`SetupError::InvalidStep`] for an impossible one.
     pub fn with_step(&self, h: f64) -> Result<Self, SetupError> {
-        Self::of(self.system.refolded(1.0), h)
+        let single = Self::of(self.system.refolded(1.0), h)?;
+        self.stages.as_ref().map_or(Ok(single.clone()), |stages| single.composed(stages.scheme))
     }
 
     /// Sets the memory of a state to that of a new start.
@@ -357,7 +418,11 @@ impl MultibodyStepper {
         let momenta = self.momenta(state);
         let mut halves = momenta.clone();
         self.estimate(&bodies, &momenta, &mut halves);
-        self.offsets.begin(state, &halves);
+        let gammas = self.stages.as_ref().map_or_else(|| alloc::vec![1.0], |stages| stages.gammas().collect());
+        for (stage, gamma) in gammas.into_iter().enumerate() {
+            let of_stage: Vec<_> = halves.iter().map(|half| half * gamma).collect();
+            self.offsets.begin(state, stage, &of_stage);
+        }
     }
 }
 

@@ -198,17 +198,23 @@ impl MultibodyStepper {
         Vector6::solve_apart(&factors, Pattern::WHOLE, &(momentum - bias))
     }
 
-    /// Writes approximately half the coordinates of the increments at these momenta, without terms between bodies.
+    /// Writes approximately half the coordinates of the increments at these momenta: without terms between bodies, unless a body
+    /// has no velocity without them.
     pub(super) fn estimate(&self, bodies: &[Body], momenta: &[Vector6<f64>], halves: &mut [Vector6<f64>]) {
         for (body, half) in halves.iter_mut().enumerate() {
             *half = self.velocity_of(body, &bodies[body], &momenta[body]) * (self.h * 0.5);
         }
+        if self.has_point_masses {
+            let velocities = self.velocities_of(bodies, momenta);
+            halves.iter_mut().zip(velocities).for_each(|(half, velocity)| *half = velocity * (self.h * 0.5));
+        }
     }
 
     /// Checks the inertias of the bodies at these configurations.
-    pub(super) fn check_inertias(&self, at: impl Fn(usize) -> Body) -> Result<(), SetupError> {
-        (0..self.bodies()).try_for_each(|body| {
-            let inertia = BlockDiagonal([self.at_rest(body, &at(body)).2]);
+    pub(super) fn check_inertias(&self, at: &[Body]) -> Result<(), SetupError> {
+        let Coefficients { matrices, .. } = self.limit(at);
+        matrices.into_iter().enumerate().try_for_each(|(body, inertia)| {
+            let inertia = BlockDiagonal([inertia]);
             let of_body = (self.bodies() > 1).then_some(body);
             check_inertia::<[Body; 1]>(&inertia).map_err(|error| match error {
                 SetupError::NegativeKinetic { pivot, .. } => SetupError::NegativeKinetic { pivot, body: of_body },

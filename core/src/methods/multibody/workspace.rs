@@ -28,6 +28,8 @@ pub(super) struct Workspace {
     /// The right-hand sides `a`.
     pub(super) a: Vec<Vector6<f64>>,
     pub(super) half: Vec<Vector6<f64>>,
+    /// The guess of the half increments.
+    pub(super) guess: Vec<Vector6<f64>>,
     pub(super) slow: Vec<Vector6<f64>>,
     pub(super) reactions: Vec<Vector6<f64>>,
     /// Momenta after all changes but the projection.
@@ -37,6 +39,9 @@ pub(super) struct Workspace {
     pub(super) equations: Equations,
     /// A state before a run.
     pub(super) before: Vec<f64>,
+    /// A state during the stages of a step, and that of one stage.
+    pub(super) whole: Vec<f64>,
+    pub(super) of_stage: Vec<f64>,
 }
 
 impl Workspace {
@@ -54,6 +59,7 @@ impl Workspace {
             &mut self.between,
             &mut self.a,
             &mut self.half,
+            &mut self.guess,
             &mut self.slow,
             &mut self.reactions,
             &mut self.changed,

@@ -2,6 +2,7 @@
 //! bodies with translations; systems of many bodies, chains of many links, and bodies with joints.
 
 mod casimirs;
+mod damped;
 mod declared;
 mod edges;
 mod forces;
