@@ -27,7 +27,7 @@ def test_a_scene_of_one_body():
 def test_a_scene_of_several_bodies():
     paths = [path for path in sorted(SCENES.glob("*.toml")) if "[[joint]]" in path.read_text()]
     run = ls.scene(paths[0]).run()
-    assert len(run) > 10 and "<html" in (run.html() or "") and run.svg().startswith("<svg")
+    assert len(run) > 10 and "<html" in run.html() and run.svg().startswith("<svg")
 
 
 def test_steps_of_a_density_are_those_of_a_file():

@@ -251,6 +251,11 @@ fn mistakes_of_laws_and_wheels_have_their_place() {
         ("[[wheel]]\naxis = [0, 0, 1]\n".to_owned(), "missing field `inertia`"),
         ("[wheel]\naxis = [0, 0, 1]\n".to_owned(), "is a list of tables"),
         (wheel("name = \"a b\""), "letters, digits"),
+        (wheel("torque = { times = [0, 0.5], values = [0, 1], between = \"lines\" }"), "no value after the last of"),
+        (
+            wheel("torque = { times = [0, 2], values = [[0, 1], [1, 1]], between = \"lines\" }"),
+            "one number at each time",
+        ),
         (format!("{}{}", wheel("name = \"a\"\n"), wheel("name = \"a\"\n")), "two wheels have the name `a`"),
     ] {
         let text = format!(
@@ -293,6 +298,31 @@ fn several_laws_are_added() {
         momentum += 0.1 * torque;
         assert!((row[3] - torque).abs() < 1e-12 && (row[6] * 2.0 - momentum).abs() < 1e-12, "{row:?}");
     }
+}
+
+/// A law without a value ends the run, also within limits, which would hide it; a signal turns a wheel by its impulse.
+#[test]
+fn laws_without_values_and_signals_of_wheels() {
+    let folder = folder("laws_without_values_and_signals_of_wheels");
+    let scene = |device: &str| {
+        format!(
+            "title = \"A law\"\n[body]\nmoments = [1, 1, 1]\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 0, 0]\n[run]\nduration = \
+             2\nstep = 0.4\n[output]\ncolumns = [\"wheel-speeds\", \"velocity\"]\n{device}\n"
+        )
+    };
+    for torque in ["[0, 0, sqrt(0.5 - t)]", "[0, clamp(sqrt(0.5 - t), 0, 1), 0]", "[max(sqrt(0.5 - t), 0), 0, 0]"] {
+        let text =
+            scene(&format!("[[control]]\ntorque = \"{torque}\"\nlargest = 0.1")).replace("\"wheel-speeds\", ", "");
+        fs::write(folder.join("scene.toml"), text).unwrap();
+        let output = called(&folder, &["run", "scene.toml", "--out", "."]);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(3) && told.contains("stopped at t = 0.8 s"), "{torque}: {told}");
+    }
+    let wheel = "[[wheel]]\naxis = [0, 1, 0]\ninertia = 0.5\nspeed = 3\ntorque = { times = [0, 0.7, 1.5], values = [0, 0.2, 0], \
+                 between = \"steps\" }";
+    let end = rows(&folder, &scene(wheel)).pop().unwrap();
+    // 0.2 N m from .7 s to 1.5 s, between the ends of steps.
+    assert!((end[3] + 0.16).abs() < 1e-14 && (end[1] - (3.0 + 0.16 / 0.5 + 0.16)).abs() < 1e-13, "{end:?}");
 }
 
 /// Events between steps, an ensemble of starts and the summary have laws, too.

@@ -251,6 +251,33 @@ fn the_arm_of_the_guide() {
     assert!((last[6] - 9.81 * 9.7).abs() < 1e-3, "{last:?}");
 }
 
+/// A link with a mass and no inertia has that of its shape, in the shape's axes.
+#[test]
+fn an_inertia_by_a_shape() {
+    let link = |shape: &str| {
+        let text = robot(&[
+            "<link name=\"base\"/>\n".to_owned(),
+            format!(
+                "<link name=\"rod\"><visual><geometry><mesh filename=\"a\"/></geometry></visual><collision><origin rpy=\"0 1.5707963267948966 0\"/><geometry>{shape}</geometry></collision><inertial><mass value=\"3\"/><inertia/></inertial></link>\n"
+            ),
+            joint("pin", "continuous", ["base", "rod"], ""),
+        ]);
+        imported("by-a-shape", &text, false)
+    };
+    let Import { text, remarks } = link("<cylinder radius=\"0.1\" length=\"0.6\"/>");
+    let remark = "link rod: its inertia is zero, given that of its `collision` of one material";
+    assert_eq!(remarks, ["link rod: `visual` is a shape, and shapes aren't read", remark]);
+    // The axis of the cylinder is x of the link.
+    let line = text.lines().find(|line| line.starts_with("moments")).unwrap();
+    let numbers: Vec<f64> = line.split(['[', ',', ']']).filter_map(|number| number.trim().parse().ok()).collect();
+    let across = 3.0 * (0.01 / 4.0 + 0.36 / 12.0);
+    for (found, expected) in numbers.iter().zip([0.015, across, across]) {
+        assert!((found - expected).abs() < 1e-15, "{line}");
+    }
+    let of_mesh = link("<mesh filename=\"b\"/>");
+    assert!(of_mesh.remarks.iter().any(|one| one.contains("its inertia isn't positive")), "{:?}", of_mesh.remarks);
+}
+
 /// Mistakes have places in the model.
 #[test]
 fn wrong_models() {

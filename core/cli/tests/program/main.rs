@@ -21,4 +21,5 @@ mod sessions;
 mod several;
 mod signals;
 mod sums;
+mod systems;
 mod wrong_files;

@@ -134,6 +134,14 @@ fn a_start_at_rest_relative_to_the_local_vertical_stays() {
     for (found, expected) in tilted[0][1..4].iter().zip(angles) {
         assert!((found - expected).abs() < 1e-12, "{:?}", tilted[0]);
     }
+    // The matrix of these angles, by its rows.
+    let [roll, pitch, yaw] = angles;
+    let turn = Rotation3::from_euler_angles(roll, pitch, yaw);
+    let entries = turn.matrix().row_iter().map(|row| row.iter().copied().collect()).collect::<Vec<Vec<f64>>>();
+    let text = local("[2, 2, 2]", "RPY", more).replace("rpy = RPY", &format!("attitude = {entries:?}"));
+    let by_matrix = rows(&folder, &text);
+    let apart = crate::called::apart(&by_matrix[..100], &tilted[..100]);
+    assert!(apart < 1e-12, "{apart:e}");
     let down = (angles[0].cos() * angles[1].cos()).acos();
     assert!((tilted[0][7] - down).abs() < 1e-12, "{:?}", tilted[0]);
 }

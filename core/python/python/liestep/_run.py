@@ -307,12 +307,12 @@ class _Pickled:
 
     summary: str
     svg: str
-    html: str | None
+    html: str
 
     def picture(self) -> str:
         return self.svg
 
-    def page(self) -> str | None:
+    def page(self) -> str:
         return self.html
 
 
@@ -338,10 +338,10 @@ class SceneRun(Motion):
         """The picture that the file asks for."""
         return self._run.picture()
 
-    def html(self, path: str | Path | None = None) -> str | None:
+    def html(self, path: str | Path | None = None) -> str:
         """The page that plays it."""
         page = self._run.page()
-        if path is not None and page is not None:
+        if path is not None:
             Path(path).write_text(page, encoding="utf-8")
         return page
 

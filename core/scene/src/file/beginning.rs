@@ -35,7 +35,10 @@ impl<'de> Deserialize<'de> for Beginning {
 
 type Value<'a> = Spanned<DeValue<'a>>;
 
-const ROTATIONS: [&str; 3] = ["euler", "quaternion", "yaw_pitch_roll"];
+const ROTATIONS: [&str; 4] = ["euler", "quaternion", "yaw_pitch_roll", "rpy"];
+/// The keys of the start of a rotation.
+const TURNED: [&str; 9] =
+    ["euler", "quaternion", "yaw_pitch_roll", "rpy", "attitude", "velocity", "euler_rates", "momentum", RELATIVE];
 /// The key of the frame that a start is relative to.
 const RELATIVE: &str = "relative_to";
 const ONE_VELOCITY: &str = "a start has one of `velocity` and `momentum`";
@@ -157,7 +160,9 @@ impl Place<'_, '_> {
         let known: &[&str] = match (self.factor.kind, self.group) {
             (FactorKind::Translation(_), _) => &["position", "velocity", "momentum"],
             (_, "SE2") => &["attitude", "angle", "position", "velocity", "momentum"],
-            (_, "SE3") => &["attitude", "euler", "quaternion", "yaw_pitch_roll", "position", "velocity", "momentum"],
+            (_, "SE3") => {
+                &["attitude", "euler", "quaternion", "yaw_pitch_roll", "rpy", "position", "velocity", "momentum"]
+            }
             _ => &["attitude", "velocity", "momentum"],
         };
         if let Some((key, _)) = self.table.iter().find(|(key, _)| !known.contains(&key.get_ref().as_ref())) {
@@ -180,6 +185,9 @@ impl Place<'_, '_> {
 
     /// The start of a body that turns.
     fn turned(&self) -> Result<Beginning, SpanMessage> {
+        if let Some((key, _)) = self.table.iter().find(|(key, _)| !TURNED.contains(&key.get_ref().as_ref())) {
+            return Err((key.span(), unknown(key.get_ref(), TURNED.into_iter())));
+        }
         let momentum = self.table.get("momentum");
         let mut table = self.table.clone();
         if let Some(momentum) = momentum {

@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use liestep_late::Signal;
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-use crate::file::law::{Kind, Law, Value};
+use crate::file::law::{Kind, Law, Value, within};
 use crate::file::mistake::{SpanMessage, advised};
 use crate::file::orbit::{FieldInTime, Nadir, Parameter as _, Time, towards_mass};
 use crate::file::parameter::{Parameter, in_value};
@@ -125,7 +125,8 @@ impl Controller {
             velocity -= attitude.tr_mul(&orbit.turning(seen.now.time));
             attitude = orbit.local_vertical(seen.now.time).tr_mul(&attitude);
         }
-        let error = self.target.inverse() * UnitQuaternion::from_matrix(&attitude);
+        let error =
+            self.target.inverse() * UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(attitude));
         // The sign of the shorter turn.
         let error = if error.w < 0.0 { -error.into_inner() } else { error.into_inner() };
         let own = [
@@ -250,7 +251,7 @@ impl Control {
 
     /// A torque within the limits of the axes, and then of the norm.
     pub(crate) fn limited(&self, torque: Vector3<f64>) -> Vector3<f64> {
-        let within = torque.zip_map(&self.largest, |part, most| part.max(-most).min(most));
+        let within = torque.zip_map(&self.largest, |part, most| within(part, [-most, most]));
         let norm = within.norm();
         if norm > self.largest_norm { within * (self.largest_norm / norm) } else { within }
     }

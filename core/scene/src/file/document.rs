@@ -5,7 +5,7 @@ use std::path::Path;
 
 use liestep::with::Scheme;
 use liestep_derivation::Role;
-use liestep_late::{Declaration, LateError};
+use liestep_late::{Declaration, LateError, Signal};
 use serde::Deserialize as _;
 use toml::Spanned;
 use toml::de::{DeValue, Deserializer};
@@ -13,7 +13,7 @@ use toml::de::{DeValue, Deserializer};
 use crate::file::beginning::Beginning;
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
-use crate::file::control::{self, settle};
+use crate::file::control::{self, Motor, settle};
 use crate::file::effects::Table as _;
 use crate::file::group::Group;
 use crate::file::lagrangian::{DeclaredTerm, take};
@@ -270,16 +270,22 @@ fn of_signal(one: &OverTime, file: &SceneFile) -> Option<SpanMessage> {
     if let Some(value) = values.find(|value| !scratch.set_one(one, value)) {
         return wrong(format!("`{key}` of `{table}` can't be {value:?}"));
     }
-    let ([first, last], duration) = (signal.ends(), file.run.duration);
+    wrong(of_ends(signal, file.run.duration)?)
+}
+
+/// The mistake of a signal that has no value at an end of a run of this duration, s.
+fn of_ends(signal: &Signal, duration: f64) -> Option<String> {
+    let [first, last] = signal.ends();
     if first > 0.0 {
-        return wrong(format!(
+        return Some(format!(
             "a run starts at the time 0, and the first of `times` is {first} s: give a value from 0 on"
         ));
     }
     // The rounding of a duration.
     let is_short = last < duration * (1.0 - 1e-9);
-    is_short.then_some(())?;
-    wrong(format!("the run ends at {duration} s, and by lines there is no value after the last of `times`, {last} s"))
+    is_short.then(|| {
+        format!("the run ends at {duration} s, and by lines there is no value after the last of `times`, {last} s")
+    })
 }
 
 /// Mistakes of the tables `[[pointing]]`.
@@ -323,8 +329,14 @@ fn of_devices(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> 
             "the scene's own step: leave `method` out",
         ),
     ];
-    let (_, at, what) = beside.into_iter().find(|(is_odd, ..)| *is_odd)?;
-    Some((at, format!("laws and wheels are beside {what}")))
+    if let Some((_, at, what)) = beside.into_iter().find(|(is_odd, ..)| *is_odd) {
+        return Some((at, format!("laws and wheels are beside {what}")));
+    }
+    file.wheel.iter().find_map(|wheel| {
+        let Motor::Signal(signal) = &wheel.motor else { return None };
+        let several = (signal.width() != 1).then(|| "the torque of a wheel is one number at each time".to_owned());
+        several.or_else(|| of_ends(signal, file.run.duration)).map(|message| (wheel.span.clone(), message))
+    })
 }
 
 /// Conflicts with a density of steps.

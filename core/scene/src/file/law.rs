@@ -50,6 +50,16 @@ impl Value {
     }
 }
 
+/// A number, or the bound beyond which it lies; NaN where one of them is.
+///
+/// The standard library's `clamp` panics where the bounds are in the wrong order, and its `min` and `max` lose a NaN.
+pub(crate) fn within(number: f64, [low, high]: [f64; 2]) -> f64 {
+    if number.is_nan() || low.is_nan() || high.is_nan() {
+        return f64::NAN;
+    }
+    number.max(low).min(high)
+}
+
 /// A function of a law, by its name, with its kinds.
 #[derive(Clone, Copy)]
 enum Function {
@@ -76,8 +86,8 @@ impl Function {
             "sin" => Self::OfNumber(f64::sin),
             "cos" => Self::OfNumber(f64::cos),
             "exp" => Self::OfNumber(f64::exp),
-            "min" => Self::OfTwo(f64::min),
-            "max" => Self::OfTwo(f64::max),
+            "min" => Self::OfTwo(|x, y| within(x, [f64::NEG_INFINITY, y])),
+            "max" => Self::OfTwo(|x, y| within(x, [y, f64::INFINITY])),
             "clamp" => Self::Clamp,
             "dot" => Self::Dot,
             "cross" => Self::Cross,
@@ -109,8 +119,7 @@ impl Function {
         match (self, values) {
             (Self::OfNumber(f) | Self::OfEach(f), &[x]) => Value::each([x], |[x]| f(x)),
             (Self::OfTwo(f), &[x, y]) => Value::each([x, y], |[x, y]| f(x, y)),
-            // The standard library's function panics where the bounds are in the wrong order.
-            (Self::Clamp, &[x, low, high]) => Value::each([x, low, high], |[x, low, high]| x.max(low).min(high)),
+            (Self::Clamp, &[x, low, high]) => Value::each([x, low, high], |[x, low, high]| within(x, [low, high])),
             (Self::Dot, &[x, y]) => Value::Number(x.vector().dot(&y.vector())),
             (Self::Cross, &[x, y]) => Value::Vector(x.vector().cross(&y.vector())),
             (Self::Norm, &[x]) => Value::Number(x.vector().norm()),

@@ -88,7 +88,7 @@ impl Mistake {
 }
 
 /// Words of other programs, each with the name that it stands for here, and advice for where that name is expected.
-const OTHER_WORDS: [(&str, &str, &str); 19] = [
+const OTHER_WORDS: [(&str, &str, &str); 22] = [
     ("hinge", "pin", "a hinge is a `pin`"),
     ("revolute", "pin", "a revolute joint is a `pin`"),
     ("spherical", "ball", "a spherical joint is a `ball`"),
@@ -106,6 +106,9 @@ const OTHER_WORDS: [(&str, &str, &str); 19] = [
     ("law", "control", "a law of a torque is a `control`"),
     ("damping", "drag", "damping against turning is `drag`"),
     ("omega", "velocity", "the angular velocity is `velocity`, in the body"),
+    ("matrix", "attitude", "the matrix of an attitude is `attitude`"),
+    ("dcm", "attitude", "the matrix of an attitude is `attitude`, body to space"),
+    ("frame", "relative_to", "a start is `relative_to` the \"local vertical\""),
     ("mass", "m", "the mass is `m`"),
     ("inertia", "J", "a tensor of inertia is `J`, principal moments are `moments`"),
 ];

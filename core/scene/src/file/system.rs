@@ -286,12 +286,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         let message = "both bodies of this joint have places already, so that it doesn't give one: leave this out, or `position` and `start` of one of them";
         return Err((span, message.to_owned()));
     }
-    let springs = table.spring.into_iter().map(|spring| {
-        let SpringTable { bodies: names, at, k, length } = spring.into_inner();
-        let spring = Spring { k: k.value, length: length.value, at: at.map(|point| point.value) };
-        Ok(Between { bodies: numbers(&names, (&bodies, &numbered))?, of: spring })
-    });
-    let springs = springs.collect::<Result<_, SpanMessage>>()?;
+    let springs = springs_of(table.spring, (&bodies, &numbered))?;
     let step = table.run.step.get_ref().value;
     let duration = table.run.duration.get_ref().value;
     let steps = equal_steps(step, duration).map_err(|message| (table.run.step.span(), message))?;
@@ -336,6 +331,16 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         system.event.push(event);
     }
     Ok(system)
+}
+
+/// The springs between named bodies.
+fn springs_of(springs: Vec<Spanned<SpringTable>>, bodies: Named<'_>) -> Result<Vec<Between<Spring>>, SpanMessage> {
+    let springs = springs.into_iter().map(|spring| {
+        let SpringTable { bodies: names, at, k, length } = spring.into_inner();
+        let spring = Spring { k: k.value, length: length.value, at: at.map(|point| point.value) };
+        Ok(Between { bodies: numbers(&names, bodies)?, of: spring })
+    });
+    springs.collect()
 }
 
 /// A method, or why the system can't have it.

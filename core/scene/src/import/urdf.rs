@@ -5,6 +5,7 @@ use roxmltree::{Document, Node};
 
 use super::rigid::Distribution;
 use super::robot::{Connection, Joint, Link, Robot, Unsuitable};
+use crate::file::shape::{Round, Shape};
 
 type Read<T> = Result<T, Unsuitable>;
 
@@ -78,12 +79,46 @@ fn origin(node: &Node<'_, '_>) -> Read<Isometry3<f64>> {
     Ok(Isometry3::from_parts(Translation3::from(shift), turn))
 }
 
+/// The remark about a shape that isn't read.
+fn unread(link: &str, tag: &str) -> String {
+    format!("link {link}: `{tag}` is a shape, and shapes aren't read")
+}
+
+/// The inertia by the mass, m², of the first shape that collides or is seen and that has one, in the axes of its link.
+fn of_shape(link: &Node<'_, '_>) -> Read<Option<(&'static str, Matrix3<f64>)>> {
+    for tag in ["collision", "visual"] {
+        for element in link.children().filter(|child| child.has_tag_name(tag)) {
+            let Some(geometry) = child(&element, "geometry") else { continue };
+            if let Some(shape) = shape(&geometry)? {
+                let R = origin(&element)?.rotation.to_rotation_matrix();
+                return Ok(Some((tag, R.matrix() * shape.inertia() * R.matrix().transpose())));
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// The box, the cylinder or the sphere of an element `geometry`; none of a mesh.
+fn shape(geometry: &Node<'_, '_>) -> Read<Option<Shape>> {
+    let positive = |node: &Node<'_, '_>, attribute: &str| Ok(number(node, attribute)?.filter(|number| *number > 0.0));
+    if let Some(element) = child(geometry, "box") {
+        return Ok(triple(&element, "size")?.filter(|edges| edges.min() > 0.0).map(Shape::Box));
+    }
+    if let Some(element) = child(geometry, "cylinder") {
+        let (radius, length) = (positive(&element, "radius")?, positive(&element, "length")?);
+        let round = |(radius, length)| Shape::Round(Round { radius, length, axis: Vector3::z(), has_caps: false });
+        return Ok(radius.zip(length).map(round));
+    }
+    let Some(element) = child(geometry, "sphere") else { return Ok(None) };
+    Ok(positive(&element, "radius")?.map(Shape::Sphere))
+}
+
 fn link(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Link> {
     let name = name(node)?;
     for shape in ["visual", "collision"] {
         let count = node.children().filter(|child| child.has_tag_name(shape)).count();
         if count > 0 {
-            remarks.push(format!("link {name}: `{shape}` is a shape, and shapes aren't read"));
+            remarks.push(unread(&name, shape));
         }
     }
     for other in node.children().filter(Node::is_element) {
@@ -109,6 +144,14 @@ fn link(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Link> {
             }
         }
         mass = Distribution { mass: kg, centre: Vector3::zeros(), inertia: J }.seen(&origin(&inertial)?);
+        if J.amax() == 0.0
+            && kg > 0.0
+            && let Some((tag, inertia)) = of_shape(node)?
+        {
+            mass.inertia = inertia * kg;
+            remarks.retain(|remark| *remark != unread(&name, tag));
+            remarks.push(format!("link {name}: its inertia is zero, given that of its `{tag}` of one material"));
+        }
     }
     Ok(Link { name, place: place(node), mass })
 }

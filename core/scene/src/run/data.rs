@@ -87,9 +87,9 @@ pub(crate) fn numbers(file: &SceneFile, J: &Inertia, body: Option<&LibraryBody>,
         [&file.lagrangian, &file.force].map(|own| own.iter().flat_map(|own| own.numbers.iter().copied()));
     let body = body.iter().flat_map(|body| body.numbers.iter().copied());
     // The gravity gradient pulls at wheels, too.
-    let whole = Inertia::new(J.as_matrix() + of_wheels(&file.wheel)).unwrap_or(*J);
-    let of = |key: &str| if key == "gravity_gradient" { &whole } else { J };
-    let listed = file.effects().flat_map(|(effect, table)| table.numbers(of(effect.key), file.at(time)));
+    let whole = || Inertia::new(J.as_matrix() + of_wheels(&file.wheel)).unwrap_or(*J);
+    let of = |key: &str| if key == "gravity_gradient" && !file.wheel.is_empty() { whole() } else { *J };
+    let listed = file.effects().flat_map(|(effect, table)| table.numbers(&of(effect.key), file.at(time)));
     body.chain(lagrangians).chain(listed).chain(forces).collect()
 }
 

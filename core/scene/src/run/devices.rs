@@ -8,7 +8,7 @@ use liestep::{SetupError, StepError};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::file::control::{Controller, Motor, Seen, Wheel, entries, fit, of_wheels, readings, stride};
-use crate::file::law::Value;
+use crate::file::law::{Value, within};
 use crate::file::orbit::Time;
 use crate::file::scene::SceneFile;
 use crate::run::data::{LibraryBody, Whole, numbers};
@@ -191,7 +191,7 @@ impl Devices {
             let up = ((wheel.largest_speed - speed) * wheel.inertia / length.abs()).max(0.0);
             let down = ((wheel.largest_speed + speed) * wheel.inertia / length.abs()).max(0.0);
             let most = wheel.largest_torque;
-            wanted.max(-down).min(up).max(-most).min(most)
+            within(within(wanted, [-down, up]), [-most, most])
         };
         self.file.borrow().wheel.iter().enumerate().map(of).collect()
     }
@@ -205,6 +205,9 @@ impl Devices {
         }
         let span = [self.time(state), length];
         let motors = self.motors(&memory, &velocity, span);
+        if !motors.iter().all(|torque| torque.is_finite()) {
+            return Err(OF_A_LAW);
+        }
         let mean = memory.momenta.iter().zip(&motors).map(|(momentum, torque)| momentum + torque * length * 0.5);
         let whole = self.held(span, &mean.collect::<Vec<_>>(), &memory.torques)?;
         let mut next = whole.adopt(&self.inner(state));

@@ -383,6 +383,7 @@ impl MultibodyStepper {
     ///
     /// The errors of [`step`](Self::step).
     pub fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+        self.check(state)?;
         let places: Vec<_> = self.attitudes(state).iter().map(place).collect();
         let axes = Matrix3::identity();
         let force = |(joined, multipliers): (&Joint, Vector6<f64>)| {
