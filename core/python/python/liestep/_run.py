@@ -249,9 +249,11 @@ class Run(Motion):
 
     @property
     def spatial_momentum(self) -> Array:
-        """The angular momentum on SO(3) in space, kg m²/s."""
+        """The momentum in space, a row for each row: on SO(3) the angular momentum, kg m²/s; elsewhere by the generators."""
         import numpy as np
 
+        if "q_w" not in self._names:
+            return self.group("spatial_momentum_")
         return np.asarray(np.einsum("nij,nj->ni", self.matrix, self.momentum))
 
     def plot(self, axes: Any = None) -> Any:
