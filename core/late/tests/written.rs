@@ -246,6 +246,10 @@ fn so_have_logarithms_and_exponentials() {
         let velocity = [2.0 * faster, 4.0 * faster, 9.0 * faster];
         assert!(has_the_bits_of(&log, attitude, &velocity, 1_000, &text), "{faster}");
     }
+    // Thirty thousand operations.
+    let sixth = SixthOrderTop { J, weight: 15.0, rho: Vector3::new(0.1, -0.2, 0.4), up: Vector3::z() };
+    let text = c(parsed(SixthOrderTop::DECLARATION)).expect("a step in C");
+    assert!(has_the_bits_of(&sixth, attitude, &[0.7, -1.1, 4.0], 200, &text));
     let text = c(parsed(TurnedTop::DECLARATION)).expect("a step in C");
     let turned = |length: f64| {
         let (v, J_d) = (Vector3::new(0.6, -0.48, 0.64) * length, *top().J_d.as_matrix());
