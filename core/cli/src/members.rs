@@ -14,9 +14,12 @@ pub(crate) struct Scenes {
     seed: u64,
 }
 
+/// A member by its number, with its scene; none for a member that can't exist.
+type MemberScene = (Arc<Scenes>, u64, Option<SceneFile>);
+
 thread_local! {
-    /// The last member of this thread, with its scene; none for a member that can't exist.
-    static LAST: RefCell<Option<(Arc<Scenes>, u64, Option<SceneFile>)>> = const { RefCell::new(None) };
+    /// The last member of this thread.
+    static LAST: RefCell<Option<MemberScene>> = const { RefCell::new(None) };
 }
 
 impl Scenes {

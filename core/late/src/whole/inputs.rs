@@ -68,23 +68,24 @@ impl<B: Backend<f64>> Whole<B> {
     /// The body velocity of a state with other [numbers](Self::numbers) for the parameters; NaN where there is none.
     #[must_use]
     pub fn velocity_with(&self, state: &[f64], numbers: &[f64]) -> Vec<f64> {
-        self.limited(state, numbers, |limit, momentum| limit.velocity(momentum))
-            .unwrap_or_else(|| vec![f64::NAN; self.codes.sizes.n])
+        let found = self.limited(state, numbers).map(|(limit, momentum)| limit.velocity(momentum));
+        found.unwrap_or_else(|| vec![f64::NAN; self.codes.sizes.n])
     }
 
     /// The energy of a state with other [numbers](Self::numbers) for the parameters, in the declaration's unit; NaN where there
     /// is none.
     #[must_use]
     pub fn energy_with(&self, state: &[f64], numbers: &[f64]) -> f64 {
-        self.limited(state, numbers, |limit, momentum| limit.energy(&limit.velocity(momentum))).unwrap_or(f64::NAN)
+        let energy = |(limit, momentum): (Limit<'_, B>, &[f64])| limit.energy(&limit.velocity(momentum));
+        self.limited(state, numbers).map_or(f64::NAN, energy)
     }
 
-    /// A function of the continuous limit and the momentum at a state; none for slices of other lengths.
-    fn limited<R>(&self, state: &[f64], numbers: &[f64], function: impl Fn(&Limit<'_, B>, &[f64]) -> R) -> Option<R> {
+    /// The continuous limit and the momentum at a state; none for slices of other lengths.
+    fn limited<'s>(&'s self, state: &'s [f64], numbers: &'s [f64]) -> Option<(Limit<'s, B>, &'s [f64])> {
         let (sizes, codes) = (&self.codes.sizes, &*self.codes);
         let state = self.checked(state).ok().filter(|_| numbers.len() == self.numbers.len())?;
         let limit = Limit { codes, numbers, advected: &state[sizes.advected()..sizes.history()] };
-        Some(function(&limit, &state[sizes.momentum()..sizes.advected()]))
+        Some((limit, &state[sizes.momentum()..sizes.advected()]))
     }
 
     /// Makes one step with a constant force, as [`step_forced`](Propagator::step_forced), and returns the derivatives of the state

@@ -78,7 +78,7 @@ pub(crate) fn set<'a>(
             let names = names(entries, key);
             // The columns of a wheel without a name have `wheel_1`.
             let is_called = |own: &String| own == name || *own == name.replacen('_', "-", 1);
-            let found = names.iter().position(is_called).and_then(|at| entries.iter_mut().nth(at));
+            let found = names.iter().position(is_called).and_then(|at| entries.get_mut(at));
             match found.map(Spanned::get_mut) {
                 Some(DeValue::Table(_)) if rest.is_empty() => {
                     Err((span, format!("a key is missing behind `{name}`, as in `{key}.{name}.KEY`")))
