@@ -1,6 +1,6 @@
 //! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
 //!
-//! `lib → {control, picture, file → state} → scene → {signal, ensemble} → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
+//! `lib → {control, picture, file → state} → scene → {signal → orbit, ensemble} → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
 //! declares is stepped by any method, recorded into columns that `NumPy` and Arrow look at where they are, or drawn at random.
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
@@ -10,6 +10,7 @@ mod ensemble;
 mod failure;
 mod file;
 mod method;
+mod orbit;
 mod picture;
 mod run;
 mod scene;
@@ -30,6 +31,7 @@ use crate::control::Task;
 use crate::ensemble::{Draws, Members};
 use crate::failure::Failure;
 use crate::method::{Names, method};
+use crate::orbit::{Along, Orbit};
 use crate::run::{Course, RunRecord};
 use crate::signal::{Change, Signal};
 use crate::start::{Start, started};
@@ -240,7 +242,7 @@ fn share(text: &str) -> PyResult<(u64, u64)> {
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::{Derivation, Scene, Signal, State, Table, View, order, plan, schemes, share};
+    use super::{Along, Derivation, Orbit, Scene, Signal, State, Table, View, order, plan, schemes, share};
     #[pymodule_export]
     use crate::file::{File, FileRun, library};
     #[pymodule_export]

@@ -1,10 +1,11 @@
 //! A run that is recorded into columns, with its events, and stopped when Python requests it.
 
 use std::cell::{Cell, RefCell};
+use std::rc::Rc;
 use std::time::{Duration, Instant};
 
 use liestep::motion::{AnyMotion, AnyState, AnyStepper, Factor, FactorKind, Integrator, Moment};
-use liestep::recording::{Event, Reason, RecordError, Recorder, Run, RunError};
+use liestep::recording::{Event, Reason, RecordError, Recorder, Run, RunError, Sink};
 use pyo3::prelude::*;
 
 use crate::failure::Failure;
@@ -108,6 +109,26 @@ fn short(number: f64) -> f64 {
     format!("{number:.11e}").parse().unwrap_or(number)
 }
 
+/// A recorder of all columns that [`Recorder`] has, and beside SO(3), where Python computes it, of the momentum in space.
+fn recorder_of<S: Sink>(stepper: &AnyStepper, sink: S) -> Recorder<'_, AnyStepper, S> {
+    let (recorder, factors) = (Recorder::new(stepper, sink), &stepper.layout().factors);
+    if matches!(&factors[..], [Factor { kind: FactorKind::Rotation, .. }]) {
+        return recorder;
+    }
+    // The first of a row's components computes all.
+    let row: Rc<RefCell<Vec<f64>>> = Rc::default();
+    let components = factors.iter().flat_map(|factor| &factor.components).enumerate();
+    components.fold(recorder, |recorder, (place, (name, _))| {
+        let row = Rc::clone(&row);
+        recorder.quantity(format!("spatial_momentum_{name}"), "", move |now| {
+            if place == 0 {
+                row.replace(stepper.spatial_momentum(now));
+            }
+            row.borrow().get(place).copied().unwrap_or(f64::NAN)
+        })
+    })
+}
+
 /// Makes the steps, and rows of all columns that [`Recorder`] has.
 pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course) -> Result<RunRecord, Failure> {
     let is_varied = stepper.length(&state).is_some();
@@ -117,13 +138,13 @@ pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course)
         None => usize::try_from(steps / course.every.max(1)).unwrap_or(usize::MAX).saturating_add(2),
     };
     let (signals, mut columns) = (Signals::new(), Columns::new(rows));
-    let recorder = RefCell::new(Recorder::new(stepper, &mut columns));
+    let recorder = RefCell::new(recorder_of(stepper, &mut columns));
     let last = Cell::new(f64::NAN);
     let row = |now: &Moment<'_, AnyStepper>| {
         last.set(now.time());
         recorder.borrow_mut().record(now)
     };
-    let tables = course.events.iter().map(|_| RefCell::new((Recorder::new(stepper, Columns::new(0)), Vec::new())));
+    let tables = course.events.iter().map(|_| RefCell::new((recorder_of(stepper, Columns::new(0)), Vec::new())));
     let tables: Vec<_> = tables.collect();
     let look = course.every.max(1) * LOOK.div_ceil(course.every.max(1));
     let mut observed = Run::new(stepper, &mut state).every(course.every, row).every(look, |_| signals.look());

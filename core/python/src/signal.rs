@@ -6,10 +6,11 @@ use liestep_late::{Between, Course};
 use pyo3::prelude::*;
 
 use crate::failure::Failure;
+use crate::orbit::Along;
 
 /// A signal by values at times, as `liestep.signal` has it.
 #[pyclass(frozen, module = "liestep._native")]
-pub(crate) struct Signal(Arc<liestep_late::Signal>);
+pub(crate) struct Signal(liestep_late::Signal);
 
 #[pymethods]
 impl Signal {
@@ -17,7 +18,7 @@ impl Signal {
     fn new(times: Vec<f64>, values: Vec<f64>, are_lines: bool) -> PyResult<Self> {
         let between = if are_lines { Between::Lines } else { Between::Steps };
         let signal = liestep_late::Signal::new(times, values, between);
-        Ok(Self(Arc::new(signal.map_err(|error| Failure::setup(&error))?)))
+        Ok(Self(signal.map_err(|error| Failure::setup(&error))?))
     }
 
     /// The first time with a value, and the last one, s.
@@ -46,9 +47,16 @@ pub(crate) struct Change {
     width: usize,
     /// Whether its values are of length one.
     is_direction: bool,
-    signal: Option<Py<Signal>>,
+    source: Source,
+}
+
+/// The source of its values.
+#[derive(FromPyObject)]
+enum Source {
+    Signal(Py<Signal>),
+    Along(Py<Along>),
     /// The function of a list of times that returns the numbers of all values.
-    function: Option<Py<PyAny>>,
+    Function(Py<PyAny>),
 }
 
 /// A length of one up to this is meant to be one.
@@ -60,18 +68,14 @@ fn length(vector: &[f64]) -> f64 {
 
 /// All parameters of a scene that change with time.
 pub(crate) struct Changes {
-    all: Vec<(Change, Option<Arc<liestep_late::Signal>>)>,
+    all: Vec<Change>,
     /// The first cause, since it was last asked for, why there was no value.
     cause: Mutex<Option<Failure>>,
 }
 
 impl Changes {
     pub(crate) fn of(changes: Vec<Change>) -> Self {
-        let with_signal = |change: Change| {
-            let signal = change.signal.as_ref().map(|signal| Arc::clone(&signal.get().0));
-            (change, signal)
-        };
-        Self { all: changes.into_iter().map(with_signal).collect(), cause: Mutex::default() }
+        Self { all: changes, cause: Mutex::default() }
     }
 
     pub(crate) const fn are_none(&self) -> bool {
@@ -89,12 +93,12 @@ impl Changes {
 
     /// Writes all values, those of signals by this function.
     fn write(&self, numbers: &mut [f64], time: f64, value: impl Fn(&liestep_late::Signal, &mut [f64])) {
-        for (change, signal) in &self.all {
+        for change in &self.all {
             let Some(own) = numbers.get_mut(change.first..change.first + change.width) else { continue };
-            match (signal, &change.function) {
-                (Some(signal), _) => value(signal, own),
-                (None, Some(function)) => self.call(change, function, time, own),
-                (None, None) => own.fill(f64::NAN),
+            match &change.source {
+                Source::Signal(signal) => value(&signal.get().0, own),
+                Source::Along(along) => along.get().write(time, own),
+                Source::Function(function) => self.call(change, function, time, own),
             }
             if change.is_direction {
                 let length = length(own);
@@ -104,11 +108,13 @@ impl Changes {
             }
             if !own.iter().all(|number| number.is_finite()) {
                 self.because(|| {
-                    let ends = signal.as_ref().map(|signal| signal.ends());
-                    let has = ends.map_or_else(String::new, |[first, last]| match last {
-                        f64::INFINITY => format!(": its signal has values from {first} s on"),
-                        _ => format!(": its signal has values from {first} to {last} s"),
-                    });
+                    let has = match &change.source {
+                        Source::Signal(signal) => match signal.get().0.ends() {
+                            [first, f64::INFINITY] => format!(": its signal has values from {first} s on"),
+                            [first, last] => format!(": its signal has values from {first} to {last} s"),
+                        },
+                        _ => String::new(),
+                    };
                     Failure::Of("StepError", format!("`{}` has no value about {time} s{has}", change.name))
                 });
             }

@@ -7,30 +7,37 @@ use pyo3::prelude::*;
 use crate::failure::Failure;
 
 /// The start of a motion: the attitude as a quaternion, as the entries of a matrix row by row, or the identity if it is
-/// empty; and a velocity.
+/// empty; and a velocity, or a momentum in its place.
 #[derive(Clone, FromPyObject)]
 pub(crate) struct Start {
     pub(crate) attitude: Vec<f64>,
     pub(crate) is_quaternion: bool,
     pub(crate) velocity: Vec<f64>,
+    pub(crate) is_by_momentum: bool,
 }
 
 /// The state at a start.
 pub(crate) fn started(stepper: &AnyStepper, start: &Start) -> Result<AnyState, Failure> {
     let factors = &stepper.layout().factors;
-    let state = stepper.start(&start.attitude(factors)?, start.velocity(factors)?);
+    let (attitude, numbers) = (start.attitude(factors)?, start.velocity(factors)?);
+    let state = if start.is_by_momentum {
+        stepper.start_with_momentum(&attitude, numbers)
+    } else {
+        stepper.start(&attitude, numbers)
+    };
     state.map_err(|error| Failure::setup(&error))
 }
 
 impl Start {
-    /// The components of the velocity.
+    /// The components of the velocity, or of the momentum in its place.
     pub(crate) fn velocity(&self, factors: &[Factor]) -> Result<&[f64], Failure> {
         let expected: usize = factors.iter().map(|factor| factor.components.len()).sum();
         let found = self.velocity.len();
         if found == expected {
             return Ok(&self.velocity);
         }
-        Err(Failure::Of("SetupError", format!("a velocity has {expected} components here, not {found}")))
+        let what = if self.is_by_momentum { "momentum" } else { "velocity" };
+        Err(Failure::Of("SetupError", format!("a {what} has {expected} components here, not {found}")))
     }
 
     /// The entries of the attitude, the identity by default.

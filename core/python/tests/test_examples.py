@@ -51,3 +51,15 @@ def test_a_law_holds_the_body_up(gymnasium):
         up, velocity = seen[:3], seen[3:]
         seen, *_ = env.step(np.cross([0, 0, 1], up) - velocity / 4)
     assert seen[2] == pytest.approx(1, abs=1e-9) and abs(seen[3:]).max() < 1e-4
+
+
+def test_pointing_from_two_lines_and_a_table(tmp_path):
+    histogram = runpy.run_path(str(EXAMPLES / "pointing.py"))["histogram"]
+    table = tmp_path / "torques.csv"
+    table.write_text("t,x,y,z\n0,0,0,0\n")
+    still = histogram(table)
+    assert still[0] == 1 and still.sum() == pytest.approx(1)
+    # A push of 1e-4 N m s about the normal, 1e-3 rad/s, is about the rate of the orbit: the axis swings by some 40 degrees.
+    table.write_text("t,x,y,z\n0,0,0,0\n1000.7,0,1e-5,0\n1010.7,0,0,0\n")
+    pushed = histogram(table)
+    assert pushed[0] < 0.3 and pushed[2:5].sum() > 0.5 and pushed.sum() == pytest.approx(1)

@@ -67,7 +67,13 @@ def test_order_momentum_and_relation(name):
             return np.array([momentum @ (dual @ (back @ e @ g).ravel()) for e in basis])
 
         first, last = (spatial(attitudes[at], run.momentum[at]) for at in (0, -1))
-        assert abs(last - first).max() < 1e-12 * max(1, abs(first).max())
+        scale = max(1, abs(first).max())
+        assert abs(last - first).max() < 1e-12 * scale
+        for at, own in ((0, first), (-1, last)):
+            assert abs(run.spatial_momentum[at] - own).max() < 1e-13 * scale
+        # A start by the momentum, at another attitude.
+        again = term.stepper(1 / steps, **method).run(momentum=run.momentum[-1], attitude=run.attitude[-1], until=1 / steps)
+        assert (again.momentum[0] == run.momentum[-1]).all() and abs(again.velocity[0] - run.velocity[-1]).max() < 1e-12
         return run.attitude[-1]
 
     for method, order, coarsest in (({}, 2, 40), ({"composition": "Suzuki 4"}, 4, 10)):

@@ -156,6 +156,11 @@ def test_matplotlib_scipy_and_pandas_where_they_are(top, tmp_path):
     figure.savefig(tmp_path / "run.png")
     assert len(figure.axes) == 2 and (tmp_path / "run.png").stat().st_size > 1000
     assert run.plot(axes=matplotlib.pyplot.subplots(2)[1]) is not figure
+    # The start is off by nothing, which is no reason for an axis of ten decades.
+    least, most = figure.axes[1].get_ylim()
+    assert most / least < 1e8 and most > abs(run.energy - run.energy[0]).max()
+    still = ls.body([1, 2, 2.5]).stepper(0.01).run(velocity=[0, 0, 1], until=1).plot()
+    assert 0 < still.axes[1].get_ylim()[0] < 1e-15
 
 
 def _share(arguments):

@@ -174,3 +174,17 @@ def test_a_pace():
         needle.for_accuracy(1e-6, velocity=[0.9, 0.1, 0.15], until=3)
     with pytest.raises(ls.SetupError):
         (needle + ls.force("SO3", work="-c * vee(F).dot(eta)", c=0.1)).stepper(0.01)
+
+
+def test_a_start_by_a_momentum():
+    top = ls.body([3, 3, 4]) + ls.gravity(m=1, rho=[0, 0, 1])
+    stepper = top.stepper(0.01)
+    by_velocity = stepper.run(velocity=[0.5, 2, 12], until=1)
+    by_momentum = stepper.run(momentum=by_velocity.momentum[0], until=1)
+    assert abs(by_momentum.velocity - by_velocity.velocity).max() < 1e-12
+    assert (stepper.start(momentum=[1, 2, 3]).momentum == [1, 2, 3]).all()
+    sought = [top.for_accuracy(1e-6, until=1, **start) for start in ({"momentum": [1.5, 6, 48]}, {"velocity": [0.5, 2, 12]})]
+    assert abs(sought[0].velocity[-1] - sought[1].velocity[-1]).max() < 1e-5 and sought[0].error < 1e-6
+    for wrong in ({}, {"velocity": [0, 0, 1], "momentum": [0, 0, 4]}, {"momentum": [1, 2]}, {"momentum": [0, 0, float("nan")]}):
+        with pytest.raises(ls.SetupError, match="momentum"):
+            stepper.run(**wrong, until=1)

@@ -32,6 +32,7 @@ mod show;
 pub use file::column::Column;
 pub use file::draws::{SceneEnsemble, Spread};
 pub use file::histogram::EndHistogram;
+pub use file::kepler::orbit;
 pub use file::mistake::{Kind, Mistake, visible};
 pub use file::read::{Scene, parse, read};
 pub use file::sample::{BodySample, Sample};

@@ -85,6 +85,25 @@ impl AnyStepper {
         self.propagator.start(attitude, velocity).map(|numbers| self.state(numbers))
     }
 
+    /// A state from the numbers of an attitude and of a momentum, body frame.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`start`](Self::start), and [`SetupError::Length`] or [`SetupError::NonFinite`] for a momentum that isn't one, or
+    /// whose velocity isn't finite.
+    pub fn start_with_momentum(&self, attitude: &[f64], momentum: &[f64]) -> Result<AnyState, SetupError> {
+        if momentum.len() != self.layout.components() {
+            let (found, expected) = (momentum.len(), self.layout.components());
+            return Err(SetupError::Length { what: "momentum", found, expected });
+        }
+        let rest = self.start(attitude, &vec![0.0; momentum.len()])?;
+        let mut numbers = rest.numbers().to_vec();
+        numbers[self.layout.momentum()].copy_from_slice(momentum);
+        let state = self.state_of(&numbers).map_or(rest, |moved| self.adopt(&moved));
+        let is_known = self.velocity(&state).iter().all(|component| component.is_finite());
+        if is_known { Ok(state) } else { Err(SetupError::NonFinite { what: "velocity of the momentum" }) }
+    }
+
     /// A state from an attitude and a velocity of the group, as by [`Stepper::start`](crate::Stepper::start).
     ///
     /// # Errors

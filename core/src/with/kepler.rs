@@ -171,6 +171,15 @@ impl Kepler {
         near.cross(on) * (rate / self.place(time).norm_squared())
     }
 
+    /// The flux density in space of a dipole in the mass, fixed in space, at a time, s: `(a/r)³ (B − 3 (B·r̂) r̂)`, in the unit
+    /// of `B`, the field above the dipole's equator, a semi-major axis away.
+    #[must_use]
+    pub fn dipole_field(&self, equator: Vector3<f64>, time: f64) -> Vector3<f64> {
+        let place = self.place(time);
+        let square = place.norm_squared();
+        (equator - place * (3.0 * equator.dot(&place) / square)) / (square * square.sqrt())
+    }
+
     /// The local vertical frame at a time, s: its axes in space as columns. The third points to the mass, the second
     /// against the normal of the orbit, and the first completes them, ahead.
     #[must_use]

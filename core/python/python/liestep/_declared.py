@@ -33,8 +33,7 @@ class Change(NamedTuple):
     first: int
     width: int
     is_direction: bool
-    signal: _native.Signal | None
-    function: Any
+    source: Any
 
 
 @dataclass(frozen=True)
@@ -290,7 +289,7 @@ class Sum:
             for which, (name, (_, numbers, signal)) in enumerate(summand.numbers):
                 if signal is not None:
                     width, is_direction = len(numbers), name in summand.directions
-                    changes.append(Change(name, self._first_number((at, which)), width, is_direction, *signal.source))
+                    changes.append(Change(name, self._first_number((at, which)), width, is_direction, signal.source))
         return changes
 
     def _signals(self) -> dict[str, Signal]:

@@ -161,7 +161,7 @@ class Ensemble:
             raise SetupError(f'a method is one of `liestep.Stepper`, as {{"composition": "Suzuki 4"}}, not {method!r:.80}')
         self.stepper = Stepper(term, step, **(method or {}))
         for name, signal in term._signals().items():
-            if signal.source[0] is None:
+            if signal.is_function:
                 raise SetupError(f"`{name}` is a function, and members have signals by values: write `ls.signal(times, function, …)`")
         self.members, self.seed = members, seed
         self._draws: list[_Draw] = []

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from . import _native
 from ._arrays import floats
 from ._declared import Summand, _value
+from ._orbit import Orbit
 from ._signal import Signal, diagonal
 from ._term import Term
 from .errors import DeclarationError
@@ -79,11 +80,18 @@ def gravity(*, m: float, rho: Any, g: float = 9.81, up: Any = (0, 0, 1)) -> Term
     return _term("gravity", "up", m=m, g=g, rho=rho, up=up)
 
 
-def gravity_gradient(*, GM: float, r: float, J: Any, direction: Any) -> Term:
+def gravity_gradient(*, J: Any, GM: Any = None, r: Any = None, direction: Any = None, orbit: Orbit | None = None) -> Term:
     """The torque of a far mass ``GM``, m³/s², at the distance `r`, m, on a body of inertia `J`.
 
-    ``direction`` is one of space, of length one.
+    ``direction`` is one of space, of length one. Along a `liestep.orbit` all three are those of the orbit.
     """
+    if orbit is not None:
+        if not isinstance(orbit, Orbit) or (GM, r, direction) != (None, None, None):
+            raise DeclarationError("an orbit is one of `ls.orbit(…)`, and has `GM`, `r` and `direction`: leave these out")
+        # Lengths are in semi-major axes.
+        GM, r, direction = orbit.rate**2, orbit.distance, orbit.nadir
+    elif GM is None or r is None or direction is None:
+        raise DeclarationError("a gravity gradient has an `orbit`, or `GM`, `r` and `direction`")
     return _term("gravity_gradient", "direction", GM=GM, r=r, J=J, direction=direction)
 
 

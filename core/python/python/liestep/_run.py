@@ -249,9 +249,11 @@ class Run(Motion):
 
     @property
     def spatial_momentum(self) -> Array:
-        """The angular momentum on SO(3) in space, kg m²/s."""
+        """The momentum in space, a row for each row: on SO(3) the angular momentum, kg m²/s; elsewhere by the generators."""
         import numpy as np
 
+        if "q_w" not in self._names:
+            return self.group("spatial_momentum_")
         return np.asarray(np.einsum("nij,nj->ni", self.matrix, self.momentum))
 
     def plot(self, axes: Any = None) -> Any:
@@ -260,13 +262,16 @@ class Run(Motion):
         ``run.plot().savefig("run.png")`` saves it.
         """
         import matplotlib.pyplot as plt
+        import numpy as np
 
         if axes is None:
             _, axes = plt.subplots(2, 1, sharex=True, constrained_layout=True)
         axes[0].plot(self.time, self.velocity, label=[name for name in self._names if name.startswith("velocity_")])
         axes[0].set(ylabel="velocity", title=self.title)
         axes[0].legend(loc="upper right")
-        axes[1].semilogy(self.time, abs(self.energy - self.energy[0]).clip(min=2.0**-52 * abs(self.energy[0])))
+        off, rounding = abs(self.energy - self.energy[0]), 2.0**-52 * abs(self.energy[0])
+        # Where nothing is off by more than rounding that is what is shown; else zeros would stretch the axis.
+        axes[1].semilogy(self.time, off.clip(min=rounding) if off.max() < 64 * rounding else np.where(off > rounding, off, np.nan))
         axes[1].set(xlabel="time, s", ylabel="energy from its start")
         return axes[0].figure
 

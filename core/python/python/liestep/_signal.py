@@ -27,9 +27,12 @@ class Signal:
 
     def __init__(self, times: Any, values: Any, between: str | None) -> None:
         self._source: tuple[Any, ...] = (times, values, between)
-        self._native: _native.Signal | None = None
+        self._native: _native.Signal | _native.Along | None = None
         if between is None:
             self.shape: tuple[int, ...] = self._called([0.0]).shape[1:]
+        elif between == "orbit":
+            self.shape = () if values[0] == "distance" else (3,)
+            self._native = _native.Along(times._native, *values)
         else:
             self.shape = values.shape[1:]
             self._native = _native.Signal(times.tolist(), values.ravel().tolist(), between == "lines")
@@ -37,7 +40,7 @@ class Signal:
     @property
     def ends(self) -> tuple[float, float]:
         """The first time with a value, and the last one, s; infinite where there is no end."""
-        if self._native is None:
+        if not isinstance(self._native, _native.Signal):
             return -float("inf"), float("inf")
         first, last = self._native.ends
         return first, last
@@ -63,6 +66,8 @@ class Signal:
     def mapped(self, function: Callable[[Array], Array]) -> Signal:
         """A signal of a linear function of all values."""
         times, values, between = self._source
+        if between == "orbit":
+            raise SetupError(f"{self!r} is no inertia")
         return Signal(times, _Composition(function, values) if between is None else function(values), between)
 
     @property
@@ -76,20 +81,27 @@ class Signal:
         """Whether its values are of length one up to rounding; those of a function are looked at where they are taken."""
         import numpy as np
 
-        if self._native is None:
+        if self._source[2] is None:
             return True
+        if self._source[2] == "orbit":
+            return bool(self._source[1][0] == "nadir")
         lengths = np.linalg.norm(self._source[1].reshape(len(self._source[0]), -1), axis=1)
         return bool((abs(lengths - 1) <= NEAR_ONE).all())
 
     @property
-    def source(self) -> tuple[_native.Signal | None, Callable[[list[float]], list[float]] | None]:
-        """What Rust takes: the signal by its values, or a function of times that returns the numbers of all values."""
-        return (None, self._numbers) if self._native is None else (self._native, None)
+    def source(self) -> _native.Signal | _native.Along | Callable[[list[float]], list[float]]:
+        """What Rust takes: its own signal, or a function of times that returns the numbers of all values."""
+        return self._numbers if self._native is None else self._native
+
+    @property
+    def is_function(self) -> bool:
+        """Whether a function of Python returns its values."""
+        return self._native is None
 
     def table(self) -> dict[str, Any]:
         """The signal as a scene's file has it."""
         times, values, between = self._source
-        if between is None:
+        if between not in ("steps", "lines"):
             raise SceneError("a file has signals by values: write `ls.signal(times, function, between=…)`")
         return {"times": times, "values": values, "between": between}
 
@@ -100,7 +112,8 @@ class Signal:
     def key(self) -> tuple[Any, ...]:
         """What tells it from others."""
         times, values, between = self._source
-        return self._source if between is None else (times.tobytes(), values.tobytes(), values.shape, between)
+        is_table = between in ("steps", "lines")
+        return (times.tobytes(), values.tobytes(), values.shape, between) if is_table else self._source
 
     def __eq__(self, other: object) -> bool:
         return self.key() == other.key() if isinstance(other, Signal) else NotImplemented
@@ -114,6 +127,8 @@ class Signal:
     def __repr__(self) -> str:
         if self._native is None:
             return f"<Signal by {self._source[1]!r}>"
+        if self._source[2] == "orbit":
+            return f"<Signal of {self._source[1][0]} along {self._source[0]!r}>"
         return f"<Signal of {len(self._source[0])} values by {self._source[2]} from {self.ends[0]:g} s to {self.ends[1]:g} s>"
 
 

@@ -95,6 +95,7 @@ class _Start:
     attitude: list[float]
     is_quaternion: bool
     velocity: list[float]
+    is_by_momentum: bool = False
 
 
 @dataclass
@@ -136,14 +137,17 @@ def _course(until: Any, every: Any, times: Any, events: Mapping[str, Any] | None
     return _Course(_end(until, asked.tolist(), step), 0, asked.tolist(), watched)
 
 
-def _start(attitude: Any, velocity: Any) -> _Start:
+def _start(attitude: Any, velocity: Any, momentum: Any = None) -> _Start:
     import numpy as np
 
+    if (velocity is None) == (momentum is None):
+        raise SetupError("a start has a `velocity`, or a `momentum` in its place")
     numbers, is_quaternion = _attitude(attitude)
-    flat = _numbers("velocity", velocity)
-    if np.ndim(velocity) > 1:
-        raise SetupError(f"`velocity` is a list of numbers, and has the shape {np.shape(velocity)}")
-    return _Start(numbers, is_quaternion, flat)
+    name, value = ("velocity", velocity) if momentum is None else ("momentum", momentum)
+    flat = _numbers(name, value)
+    if np.ndim(value) > 1:
+        raise SetupError(f"`{name}` is a list of numbers, and has the shape {np.shape(value)}")
+    return _Start(numbers, is_quaternion, flat, momentum is not None)
 
 
 class Stepper:
@@ -215,7 +219,8 @@ class Stepper:
     def run(
         self,
         *,
-        velocity: Any,
+        velocity: Any = None,
+        momentum: Any = None,
         attitude: Any = None,
         until: float | None = None,
         every: int | None = None,
@@ -228,6 +233,8 @@ class Stepper:
         ----------
         velocity : array_like
             Body velocity at the start, in the axes of the body and not of space; on SO(3) in rad/s.
+        momentum : array_like
+            Body momentum at the start instead, in the axes of the body; on SO(3) in kg m²/s.
         attitude : array_like, optional
             Body to space, ``x_space = R x_body``: a quaternion ``[w, x, y, z]`` with its scalar first, a matrix, SciPy's
             ``Rotation``, on a product a list of matrices; the identity, if none is given.
@@ -261,21 +268,21 @@ class Stepper:
         np.True_
         """
         course = self._course(until, every, times, events)
-        return self._made(_start(attitude, velocity), course, list(events or {}))
+        return self._made(_start(attitude, velocity, momentum), course, list(events or {}))
 
-    def start(self, *, velocity: Any, attitude: Any = None) -> State:
+    def start(self, *, velocity: Any = None, momentum: Any = None, attitude: Any = None) -> State:
         """The state at a start, for a loop of your own: ``state.step(torque=…)``.
 
         Parameters
         ----------
-        velocity, attitude
+        velocity, momentum, attitude
             As of `run`.
 
         Returns
         -------
         State
         """
-        return State(self, self._native.start(self.step, self.method, _start(attitude, velocity)))
+        return State(self, self._native.start(self.step, self.method, _start(attitude, velocity, momentum)))
 
     def _resumed(self, numbers: list[float]) -> _native.State:
         return self._native.resume(self.step, self.method, numbers)
@@ -414,7 +421,7 @@ class _Search(Stepper):
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
         scene = self.term._scene()
-        if not scene.is_self_adjoint or self.term._signals():
+        if not scene.is_self_adjoint or self.term._signals() or start.is_by_momentum:
             return self._by_own_steps(start, course, names)
         made = scene.ask(self.tolerance, start, course)
         kind, name = made["method"]

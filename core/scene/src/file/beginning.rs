@@ -88,15 +88,11 @@ impl Beginning {
 
     /// The state of a stepper at this start.
     pub(crate) fn state(&self, stepper: &AnyStepper) -> Result<AnyState, SetupError> {
-        if !self.is_by_momentum {
-            return stepper.start(&self.attitude, &self.velocity);
+        if self.is_by_momentum {
+            stepper.start_with_momentum(&self.attitude, &self.velocity)
+        } else {
+            stepper.start(&self.attitude, &self.velocity)
         }
-        let rest = stepper.start(&self.attitude, &vec![0.0; self.velocity.len()])?;
-        let mut numbers = rest.numbers().to_vec();
-        numbers[stepper.layout().momentum()].copy_from_slice(&self.velocity);
-        let state = stepper.state_of(&numbers).map_or(rest, |moved| stepper.adopt(&moved));
-        let is_known = stepper.velocity(&state).iter().all(|component| component.is_finite());
-        if is_known { Ok(state) } else { Err(SetupError::NonFinite { what: "velocity of the momentum" }) }
     }
 
     /// The attitude on SO(3).

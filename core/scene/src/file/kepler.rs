@@ -1,11 +1,13 @@
 //! The orbit of a scene: the table `orbit`.
 
 use std::ops::Deref;
+use std::path::Path;
 
 use liestep::with::Kepler;
 use nalgebra::Vector3;
 use serde::Deserialize;
 
+use crate::file::mistake::Mistake;
 use crate::file::quantity::{
     Angle, Direction, Duration, GravitationalParameter, Length, Number, PositiveScalar, Scalar, Speed, Triple,
 };
@@ -54,6 +56,26 @@ const STATE: &str = "an orbit by `position` and `velocity` has these two and `GM
                      \"398600.4418 km³/s²\"";
 const OPEN: &str = "this `position` and `velocity` are on no closed orbit about a mass with this `GM`";
 const TWO_LINES: &str = "an orbit by `tle` has no other key";
+
+/// Parses the keys and values of a scene's table `orbit`, as a text of TOML.
+///
+/// # Errors
+///
+/// The first [`Mistake`] in it.
+///
+/// # Examples
+///
+/// ```
+/// let keys = "period = \"90 min\"\nnormal = [0, 0, 1]\neccentricity = 0.2\nphase = \"180 deg\"";
+/// let orbit = liestep_scene::orbit(keys)?;
+/// // At the far end, 1.2 semi-major axes from the mass.
+/// assert!((orbit.place(0.0).x + 1.2).abs() < 1e-15);
+/// # Ok::<(), liestep_scene::Mistake>(())
+/// ```
+pub fn orbit(text: &str) -> Result<Kepler, Mistake> {
+    let read = toml::from_str::<Orbit>(text);
+    read.map(|orbit| *orbit).map_err(|error| Mistake::of_toml(Path::new("orbit"), text, &error))
+}
 
 impl TryFrom<OrbitTable> for Orbit {
     type Error = &'static str;

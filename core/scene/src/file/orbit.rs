@@ -70,11 +70,8 @@ pub(crate) fn towards_mass(orbit: &Orbit, time: f64) -> Vector3<f64> {
 }
 
 impl DipoleField {
-    /// The flux density at a time, s, in space, T: `(a/r)³ (B − 3 (B·r̂) r̂)`, with `B` at the equator.
     pub(crate) fn at(&self, orbit: &Orbit, time: f64) -> Vector3<f64> {
-        let (place, field) = (orbit.place(time), self.equator.value);
-        let square = place.norm_squared();
-        (field - place * (3.0 * field.dot(&place) / square)) / (square * square.sqrt())
+        orbit.dipole_field(self.equator.value, time)
     }
 }
 
