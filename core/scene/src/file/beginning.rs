@@ -1,6 +1,6 @@
 //! The start of a motion on any group: attitude and velocity of each factor.
 
-use liestep::motion::{AnyState, AnyStepper, Factor, FactorKind, Integrator as _};
+use liestep::motion::{AnyState, AnyStepper, Factor, FactorKind};
 use liestep::{SO3, SetupError};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use serde::de::IgnoredAny;
