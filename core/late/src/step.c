@@ -99,7 +99,9 @@ static int solve(const Stepper *stepper, Inputs *in, double *half) {
     return settled && d > 0.0;
 }
 
-int liestep_step(const Stepper *stepper, State *state) {
+/* Attitude, momentum and what is advected after one solve, with the guess of the next: 0 where nothing was done, and 2 where the
+   coordinates are so large that an extrapolation of theirs isn't a guess. */
+static int increment(const Stepper *stepper, State *state) {
     double half[N], a[N + 1], end[ENTRIES + 4 * N + CARRIED + 1 + NEAR];
     Inputs in = {.parameters = stepper->parameters, .constants = stepper->constants, .attitude = state->attitude,
                  .momentum = state->momentum, .advected = state->advected, .history = state->history, .half = half, .target = a};
@@ -118,8 +120,17 @@ int liestep_step(const Stepper *stepper, State *state) {
     copy(state->momentum, end + ENTRIES, N);
     copy(state->advected, end + ENTRIES + N, CARRIED);
     copy(state->history, from, 2 * N);
-    copy(state->guess, is_far ? from : from + 2 * N, N);
-    if (state->steps % (ATTITUDES > 1 ? 64 : 1024) == 0) {
+    copy(state->guess, from + 2 * N, N);
+    return 1 + is_far;
+}
+
+static int is_due(const State *state) { return state->steps % (ATTITUDES > 1 ? 64 : 1024) == 0; }
+
+int liestep_step(const Stepper *stepper, State *state) {
+    const int made = increment(stepper, state);
+    if (!made) return 0;
+    if (made > 1) copy(state->guess, state->history, N);
+    if (is_due(state)) {
         for (int i = 0; i < N && state->steps == 0; i++) {
             state->guess[i] = state->history[i];
             state->history[N + i] = 0.0;

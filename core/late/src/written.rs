@@ -162,14 +162,17 @@ fn functions_in_c(programs: &Programs) -> String {
 }
 
 /// A step as C99 that needs nothing but `math.h`, on any group: with `-ffp-contract=off` it has the bits of the whole step by
-/// interpretation. A step that takes special care is refused in C: it returns 0 and changes nothing.
+/// interpretation. A step that takes special care is refused in C: it returns 0 and changes nothing. A step that is self-adjoint
+/// has a function for symmetric compositions of it, too.
 ///
 /// # Errors
 ///
 /// [`LateError::Step`]: there is no step as programs, as of a force alone.
 pub fn c(declaration: &Declaration) -> Result<String, LateError> {
     let step = WholeStep::of(declaration)?;
-    let mut text = HEAD.replace("NAME", &declaration.name).replace("GROUP", &declaration.group());
+    let (declared, composition) = if declaration.is_self_adjoint { (COMPOSED, COMPOSITION) } else { ("", "") };
+    let text = HEAD.replace("NAME", &declaration.name).replace("GROUP", &declaration.group());
+    let mut text = text.replace("COMPOSED", declared);
     let mut first = 0;
     for parameter in &declaration.parameters {
         let length = parameter.kind.len();
@@ -212,11 +215,11 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
         let restored = step.factors.iter().filter(|factor| factor.is_restored());
         restored.map(|factor| format!("{},", number(factor))).collect::<Vec<_>>().join(" ")
     };
-    text += &STEP
+    let step = STEP
         .replace("IDENTITY", &identity.collect::<Vec<_>>().join("\n    "))
         .replace("RESTORED_PLACES", &listed(|factor| factor.entry))
         .replace("RESTORED_ENTRIES", &listed(|factor| factor.size() * factor.size()));
-    Ok(text)
+    Ok(text + &step + composition)
 }
 
 /// The programs that a step in C calls.
@@ -240,3 +243,7 @@ const POLYNOMIAL: &str = include_str!("polynomial.c");
 const STUMPFF: &str = include_str!("stumpff.c");
 const LOG_RATIO: &str = include_str!("log_ratio.c");
 const STEP: &str = include_str!("step.c");
+const COMPOSITION: &str = include_str!("composition.c");
+const COMPOSED: &str = "   int liestep_compose(const Stepper *stages, const double *gamma, int count, State *);
+                        a step h of a symmetric composition: `stages[k]` is made for gamma[k] h, and a start with the first
+";

@@ -8,6 +8,8 @@ use std::{env, fs};
 use declarations::{CayleyTop, DoublePendulum, Flyer, FullTop, LogTop, SixthOrderTop};
 use liestep::groups::{CayleyRetraction, LieGroup, Retraction, SE3, SE23};
 use liestep::mechanics::{Effect, Regular};
+use liestep::methods::CompositionScheme;
+use liestep::motion::Plan;
 use liestep::numbers::Entries;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep_derivation::whole::StepRefusal;
@@ -68,21 +70,25 @@ fn list(numbers: impl IntoIterator<Item = f64>) -> String {
     format!("{{{}}}", numbers.join(", "))
 }
 
-/// The output of the compiled program: the bits of momentum and attitude after each hundredth step.
+/// The output of the compiled program: the bits of momentum and attitude after each hundredth step, by a composition of stages
+/// of these lengths, or of one.
 fn by_c(
     text: &str,
     folder: &Path,
-    steps: u32,
+    (steps, gammas): (u32, &[f64]),
     [parameters, attitude, momentum, velocity]: [String; 4],
 ) -> Option<String> {
+    let (count, lengths) = (gammas.len(), list(gammas.iter().copied()));
+    let step = if count == 1 { "liestep_step(stages, &state)" } else { "liestep_compose(stages, g, COUNT, &state)" };
     let main = format!(
         "{text}\n#include <stdio.h>\n#include <string.h>\n#include <stdint.h>\n\
          static void print(const double *numbers, int count) {{\n    for (int i = 0; i < count; i++) {{\n        \
          uint64_t bits;\n        memcpy(&bits, numbers + i, 8);\n        printf(\"%016llx \", (unsigned long long)bits);\n    }}\n}}\n\
          int main(void) {{\n    const double p[] = {parameters}, r[] = {attitude}, m[] = {momentum}, v[] = {velocity};\n    \
-         Stepper stepper;\n    State state;\n    if (!liestep_make(&stepper, p, {STEP:?})) return 1;\n    \
-         liestep_start(&stepper, &state, r, m, v);\n    for (int i = 1; i <= {steps}; i++) {{\n        \
-         if (!liestep_step(&stepper, &state)) return 2;\n        if (i % 100) continue;\n        \
+         const double g[] = {lengths};\n    enum {{ COUNT = {count} }};\n    Stepper stages[COUNT];\n    State state;\n    \
+         for (int k = 0; k < COUNT; k++) if (!liestep_make(stages + k, p, {STEP:?} * g[k])) return 1;\n    \
+         liestep_start(stages, &state, r, m, v);\n    for (int i = 1; i <= {steps}; i++) {{\n        \
+         if (!{step}) return 2;\n        if (i % 100) continue;\n        \
          print(state.momentum, N);\n        print(state.attitude, ENTRIES);\n        puts(\"\");\n    }}\n    \
          return liestep_defect(&state) > 1e-9;\n}}\n"
     );
@@ -105,8 +111,23 @@ fn has_the_bits_of<E>(effect: &E, attitude: E::Group, velocity: &[f64], steps: u
 where
     E: Regular<Scalar = f64> + Clone,
 {
-    let folder = folder(&parsed(E::DECLARATION).name);
     let stepper = Stepper::new(effect.clone(), STEP).expect("a stepper");
+    has_the_bits_of_a_method(effect, stepper, (attitude, velocity), (steps, &[1.0]), text)
+}
+
+/// Whether all steps by this C, by stages of these lengths, are made, and have the bits of this stepper's.
+fn has_the_bits_of_a_method<E, P>(
+    effect: &E,
+    stepper: Stepper<E, P>,
+    (attitude, velocity): (E::Group, &[f64]),
+    (steps, gammas): (u32, &[f64]),
+    text: &str,
+) -> bool
+where
+    E: Regular<Scalar = f64> + Clone,
+    P: Plan<E>,
+{
+    let folder = folder(&format!("{}-{}", parsed(E::DECLARATION).name, gammas.len()));
     let mut at = velocity.iter();
     let velocity = Entries::from_entries(&mut || at.next().copied().expect("a component"));
     let mut state = stepper.start(attitude, velocity).expect("a start");
@@ -116,7 +137,7 @@ where
         list(entries(&state.momentum())),
         list(entries(&stepper.velocity(&state))),
     ];
-    let found = by_c(text, &folder, steps, given);
+    let found = by_c(text, &folder, (steps, gammas), given);
     let mut expected = String::new();
     for step in 1..=steps {
         stepper.step(&mut state).expect("a step");
@@ -145,6 +166,23 @@ fn a_step_in_c_has_the_bits_of_the_library() {
     // A single wrong operation is detected.
     let (before, after) = text.split_once("static void again").expect("a program");
     assert!(!has_the_bits(&format!("{before}static void again{}", after.replacen(" - ", " + ", 1))));
+}
+
+#[test]
+fn a_composition_in_c_has_the_bits_of_the_library() {
+    if !is_there("cc") {
+        return;
+    }
+    let start = (SO3::exp(Vector3::new(0.3, -0.5, 0.2)), &[0.7, -1.1, 4.0][..]);
+    let text = c(parsed(FullTop::DECLARATION)).expect("a step in C");
+    let bits = |scheme: CompositionScheme, text: &str| {
+        let stepper = Stepper::composed(top(), STEP, scheme).expect("a stepper");
+        let gammas: Vec<f64> = scheme.stages().collect();
+        has_the_bits_of_a_method(&top(), stepper, start, (2_000, &gammas), text)
+    };
+    assert!(bits(CompositionScheme::SUZUKI_4, &text) && bits(CompositionScheme::KAHAN_LI_8, &text));
+    let wrong = text.replace("earlier[i] * factor", "earlier[i] * -factor");
+    assert!(wrong != text && !bits(CompositionScheme::SUZUKI_4, &wrong));
 }
 
 #[test]
@@ -208,6 +246,10 @@ fn so_have_logarithms_and_exponentials() {
         let velocity = [2.0 * faster, 4.0 * faster, 9.0 * faster];
         assert!(has_the_bits_of(&log, attitude, &velocity, 1_000, &text), "{faster}");
     }
+    // Thirty thousand operations.
+    let sixth = SixthOrderTop { J, weight: 15.0, rho: Vector3::new(0.1, -0.2, 0.4), up: Vector3::z() };
+    let text = c(parsed(SixthOrderTop::DECLARATION)).expect("a step in C");
+    assert!(has_the_bits_of(&sixth, attitude, &[0.7, -1.1, 4.0], 200, &text));
     let text = c(parsed(TurnedTop::DECLARATION)).expect("a step in C");
     let turned = |length: f64| {
         let (v, J_d) = (Vector3::new(0.6, -0.48, 0.64) * length, *top().J_d.as_matrix());
