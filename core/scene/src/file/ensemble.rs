@@ -1,5 +1,6 @@
 //! The scenes of an ensemble, and conflicts with the file's other tables.
 
+use std::ops::Range;
 use std::path::Path;
 
 use toml::Spanned;
@@ -80,6 +81,38 @@ fn signals(file: &SceneFile) -> impl Iterator<Item = String> {
     all.into_iter().map(|signal| format!("\n# {signal:?}"))
 }
 
+/// Conflicts with columns: those that a member has none of, and those that its events can't know; `at` finds the place of keys.
+fn of_columns(ensemble: &SceneEnsemble, file: &SceneFile, at: &dyn Fn(&[&str]) -> Range<usize>) -> Option<SpanMessage> {
+    let wrong = |keys: &[&str], message: String| Some((at(keys), message));
+    if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
+        let names = column.names().collect::<Vec<_>>().join(", ");
+        let why = "is measured from the start of a run; leave it out";
+        return wrong(&["output", "columns"], format!("an ensemble keeps states, and `{names}` {why}"));
+    }
+    let names: Vec<&str> = file.columns().iter().flat_map(Column::names).collect();
+    if let Some(one) = ensemble.histograms.iter().find(|one| !names.contains(&one.column.as_str())) {
+        let message = format!("the `columns` of the file have no `{}`, but {}", one.column, names.join(", "));
+        return Some((one.span.clone(), message));
+    }
+    let names_energy = |event: &Event| matches!(event.quantity, Quantity::Energy(_));
+    let keeps_energy = file.columns().iter().any(|column| column.key() == "energy");
+    if file.changing().is_some() && (file.event.iter().any(names_energy) || keeps_energy && !file.event.is_empty()) {
+        let message = "where something changes with time the energy of a member isn't known between its steps, where events are: leave `energy` out of `columns` and events, or `ensemble` out of the file";
+        return wrong(&["output", "columns"], message.to_owned());
+    }
+    let is_read = |column: &Column| ["pointing", "roll-pitch-yaw", "wheel-speeds"].contains(&column.key());
+    let angles = file.group.energy() + 2;
+    let is_seen = |event: &Event| matches!(event.quantity, Quantity::Column(place, _) if place >= angles);
+    if ensemble.draws_what_columns_read()
+        && (file.event.iter().any(is_seen) || !file.event.is_empty() && file.columns().iter().any(is_read))
+    {
+        let message = "an event knows the orbit, the angles and the wheels of the file, not those that a member draws: leave \
+                       the columns of angles and wheels out, or the event, or draw something else";
+        return wrong(&["event"], message.to_owned());
+    }
+    None
+}
+
 /// The ensemble of a table; `file` is the scene without draws.
 pub(crate) fn read(
     (path, text): (&Path, &str),
@@ -100,32 +133,7 @@ pub(crate) fn read(
         let why = "members make the same number of steps, and those of a";
         return wrong(&keys, format!("{why} `{}` end at different times: leave it out", keys[1]));
     }
-    if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
-        let names = column.names().collect::<Vec<_>>().join(", ");
-        let why = "is measured from the start of a run; leave it out";
-        return wrong(&["output", "columns"], format!("an ensemble keeps states, and `{names}` {why}"));
-    }
-    let names: Vec<&str> = file.columns().iter().flat_map(Column::names).collect();
-    if let Some(one) = ensemble.histograms.iter().find(|one| !names.contains(&one.column.as_str())) {
-        let message = format!("the `columns` of the file have no `{}`, but {}", one.column, names.join(", "));
-        return Err(located((one.span.clone(), message)));
-    }
-    let names_energy = |event: &Event| matches!(event.quantity, Quantity::Energy(_));
-    let keeps_energy = file.columns().iter().any(|column| column.key() == "energy");
-    if file.changing().is_some() && (file.event.iter().any(names_energy) || keeps_energy && !file.event.is_empty()) {
-        let message = "where something changes with time the energy of a member isn't known between its steps, where events are: leave `energy` out of `columns` and events, or `ensemble` out of the file";
-        return wrong(&["output", "columns"], message.to_owned());
-    }
-    let is_read = |column: &Column| ["pointing", "roll-pitch-yaw", "wheel-speeds"].contains(&column.key());
-    let angles = file.group.energy() + 2;
-    let is_seen = |event: &Event| matches!(event.quantity, Quantity::Column(place, _) if place >= angles);
-    if ensemble.draws_what_columns_read()
-        && (file.event.iter().any(is_seen) || !file.event.is_empty() && file.columns().iter().any(is_read))
-    {
-        let message = "an event knows the orbit, the angles and the wheels of the file, not those that a member draws: leave \
-                       the columns of angles and wheels out, or the event, or draw something else";
-        return wrong(&["event"], message.to_owned());
-    }
+    of_columns(&ensemble, file, &|keys| span(document, keys)).map_or(Ok(()), Err).map_err(located)?;
     let written = table.get_ref().as_table().and_then(|table| table.get("every"));
     if let (Some(every), Some(steps), Some(value)) = (ensemble.every, file.steps(), written)
         && every > steps
