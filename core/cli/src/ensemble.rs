@@ -6,14 +6,14 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
 use clap::ArgMatches;
-use liestep::motion::Moment;
 use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
-use liestep_scene::{BodyIntegrator, Column, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread};
+use liestep_scene::{BodyIntegrator, Column, EndHistogram, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread};
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
+use crate::members::{Scenes, number};
 use crate::output::{Progress, print};
-use crate::tally::{counts, of_event};
+use crate::tally::{bars, counts, of_event};
 
 /// Simulates the members that are missing, or with `only_tells` reports the finished ones.
 pub(crate) fn ensemble(given: &ArgMatches, only_tells: bool) -> Result<(), ProgramFailure> {
@@ -133,11 +133,11 @@ fn plan<M: BodyIntegrator + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, m
         plan = plan.chunks_of(members);
     }
     let names: Vec<_> = columns(scene).map(|(_, _, name)| name).collect();
-    let own = Arc::new(SceneFile::clone(scene));
+    let own = Scenes::new(scene, drawn);
     plan = plan.keep_named(&names, {
         let own = Arc::clone(&own);
         move |run, row| {
-            let numbers = own.numbers(own.columns(), &Moment::of_step(run.stepper, run.state));
+            let numbers = own.numbers(run, own.file().columns());
             row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
         }
     });
@@ -154,8 +154,14 @@ fn plan<M: BodyIntegrator + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, m
     for (column, place, name) in columns(scene).filter(|(.., name)| !name.starts_with("q_")) {
         let own = Arc::clone(&own);
         plan = plan.reduce(name, Reduction::Moments, move |run| {
-            let numbers = own.numbers(std::slice::from_ref(&column), &Moment::of_step(run.stepper, run.state));
-            numbers.get(place).copied().unwrap_or(f64::NAN)
+            own.numbers(run, std::slice::from_ref(&column)).get(place).copied().unwrap_or(f64::NAN)
+        });
+    }
+    for EndHistogram { column: name, range, parts, .. } in &drawn.histograms {
+        let Some((column, place, _)) = columns(scene).find(|(.., own)| own == name) else { continue };
+        let (own, kind) = (Arc::clone(&own), Reduction::Histogram { range: range.clone(), bins: *parts });
+        plan = plan.reduce(&name_of(name), kind, move |run| {
+            own.numbers(run, std::slice::from_ref(&column)).get(place).copied().unwrap_or(f64::NAN)
         });
     }
     scene
@@ -163,26 +169,23 @@ fn plan<M: BodyIntegrator + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, m
         .fold(plan.keep(["t"], |run| [run.stepper.time(run.state)]), |plan, event| plan.section(section(&own, event)))
 }
 
-/// The number that a member draws.
-fn number(member: &Member<'_>, name: &str, spread: Spread) -> f64 {
-    match spread {
-        Spread::Uniform { from, to } => member.uniform(name, from..to),
-        Spread::Normal { mean, deviation } => member.normal(name, mean, deviation),
-    }
+/// The name of a column's histogram beside its moments.
+fn name_of(column: &str) -> String {
+    format!("{column} (histogram)")
 }
 
 /// The section of an event: its times, and the scene's columns then.
 fn section<M: BodyIntegrator + 'static>(
-    scene: &Arc<SceneFile>,
+    scenes: &Arc<Scenes>,
     (name, event, function, stops): MemberEvent<M>,
 ) -> Section<M> {
     let section = Section::new(event, function);
     let section = if stops { section.until() } else { section };
     let section = section.keep([&format!("{name}_t")], |now| [now.time()]);
-    columns(scene).fold(section, |section, (column, place, own)| {
-        let scene = Arc::clone(scene);
+    columns(scenes.file()).fold(section, |section, (column, place, own)| {
+        let scenes = Arc::clone(scenes);
         section.keep([&format!("{name}_{own}")], move |now| {
-            [scene.numbers(std::slice::from_ref(&column), now).get(place).copied().unwrap_or(f64::NAN)]
+            [scenes.file().numbers(std::slice::from_ref(&column), now).get(place).copied().unwrap_or(f64::NAN)]
         })
     })
 }
@@ -210,6 +213,11 @@ fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, report: &Report, (is_share,
                 let spread = moments.variance().sqrt();
                 let [mean, least, largest] = [moments.mean, moments.least, moments.largest];
                 let _ = writeln!(text, "  {name:<20}{mean:>16.6e}{spread:>16.6e}{least:>16.6e}{largest:>16.6e}");
+            }
+        }
+        for one in &drawn.histograms {
+            if let Some(Summary::Histogram(counted)) = report.reduced(&name_of(&one.column)) {
+                text.push_str(&bars(one, counted));
             }
         }
     }

@@ -11,6 +11,7 @@ mod command;
 mod ensemble;
 mod failure;
 mod files;
+mod members;
 mod output;
 mod sweep;
 mod tally;

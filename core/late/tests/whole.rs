@@ -210,6 +210,44 @@ fn values_are_prescribed_for_a_step() {
     assert_eq!((whole.step_with(&mut state, &wrong), state), (Err(error), before));
 }
 
+/// A stepper that takes numbers and a step has the bits of one that is made with them, by a composition, too.
+#[test]
+fn numbers_are_taken() {
+    for method in ["step", "composition Suzuki 4"] {
+        let first = whole(0.02, method);
+        let mut own = first.clone();
+        let state = first.start(&IDENTITY, &[0.1, 1.0, -0.3]).expect("a start");
+        for (name, value, h) in [
+            ("up", &[0.0, 0.6, 0.8][..], 0.02),
+            ("rho", &[0.1, 0.0, 0.9], 0.02),
+            ("m", &[1.5], 0.02),
+            ("m", &[1.5], -0.01),
+        ] {
+            let mut values = own.numbers().to_vec();
+            own.declaration().set(&mut values, name, value).expect("a value");
+            let made = first.with(&values, h).expect("a stepper");
+            let mut expected = [0.0; 3];
+            made.velocity(&state, &mut expected);
+            assert_eq!(own.velocity_with(&state, &values), expected);
+            assert_eq!(own.energy_with(&state, &values).to_bits(), made.energy(&state).to_bits());
+            own.take(&values, h).expect("numbers");
+            let [mut one, mut other] = [&own, &made].map(|stepper| stepper.adopt(&state));
+            assert_eq!(own.run(&mut one, 50), made.run(&mut other, 50));
+            assert_eq!((own.numbers(), own.step_size().to_bits(), one), (&values[..], h.to_bits(), other), "{name}");
+        }
+        let before = own.numbers().to_vec();
+        let wrong = vec![f64::NAN; before.len()];
+        assert!(
+            own.take(&wrong, -0.01).is_err()
+                && own.take(&before, f64::NAN).is_err()
+                && own.take(&before[1..], 0.1).is_err()
+        );
+        assert_eq!((own.numbers(), own.step_size().to_bits()), (&before[..], (-0.01_f64).to_bits()));
+        assert!(own.velocity_with(&state[1..], &before).iter().all(|rate| rate.is_nan()));
+        assert!(own.energy_with(&state, &before[1..]).is_nan());
+    }
+}
+
 /// Bodies of one text with other numbers and another step, in lanes, have the bits that they have alone, and their own ends.
 #[test]
 fn lanes_have_the_bits_of_single_steps() {

@@ -31,6 +31,7 @@ mod show;
 
 pub use file::column::Column;
 pub use file::draws::{SceneEnsemble, Spread};
+pub use file::histogram::EndHistogram;
 pub use file::kepler::orbit;
 pub use file::mistake::{Kind, Mistake, visible};
 pub use file::quantity::ratio;

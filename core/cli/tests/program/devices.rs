@@ -4,7 +4,7 @@ use std::fs;
 
 use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 
-use crate::called::{called, folder, printed, rows};
+use crate::called::{called, folder, printed, refused, refuses, rows};
 
 /// Speeds of wheels, kg m² of each, axes, and torques of three wheels.
 const MOMENTS: [f64; 3] = [0.02, 0.03, 0.05];
@@ -362,5 +362,122 @@ fn events_and_ensembles_have_laws() {
     for (_, path) in store.files().unwrap() {
         let columns = liestep_ensemble::Store::read(&path).unwrap().rows.columns;
         assert!(columns[2].iter().all(|rate| rate.abs() < 1e-8), "{:?}", columns[2]);
+    }
+}
+
+/// The table of a scene on an orbit with wheels, a law and an angle, and lines in the place of some of it.
+fn held(changes: &[(&str, &str)], more: &str) -> String {
+    let text = "title = \"Held\"\n[body]\nmoments = [1, 2, 3]\n[orbit]\nperiod = \"100 min\"\nnormal = [0, 0, 1]\n[start]\nrpy = [0.1, \
+                0.2, 0.3]\nvelocity = [0.01, 0, 0]\n[torque]\ntorque = { csv = \"push.csv\", columns = [\"x\", \"y\", \"z\"], between \
+                = \"steps\" }\n[[wheel]]\nname = \"roll\"\naxis = [1, 0, 0]\ninertia = 0.01\ntorque = \"k * q[0] + Omega[0]\"\nk = \
+                0.1\n[[wheel]]\naxis = [0, 1, 0]\ninertia = 0.02\nspeed = 30\n[[control]]\ntorque = \"-d * Omega\"\nd = 0.2\n\
+                [[pointing]]\nname = \"lens\"\naxis = [0, 0, 1]\nto = \"nadir\"\n[run]\nduration = 4\nstep = 0.5\n[output]\ncolumns = \
+                [\"quaternion\", \"velocity\", \"wheel-speeds\", \"pointing\"]\n";
+    changes.iter().fold(text.to_owned(), |text, (old, new)| {
+        assert!(text.contains(old), "{old}");
+        text.replace(old, new)
+    }) + more
+}
+
+/// The values of the listed tables and of the orbit, with lines of a file that has them by itself.
+const VARIED: [(&str, &str, &str, &str); 7] = [
+    ("wheel.roll.k", "0.3", "k = 0.1", "k = 0.3"),
+    ("wheel.roll.inertia", "0.04", "inertia = 0.01", "inertia = 0.04"),
+    ("wheel.wheel_2.speed", "-20", "speed = 30", "speed = -20"),
+    ("control.control_1.d", "0.7", "d = 0.2", "d = 0.7"),
+    ("pointing.lens.axis", "[0.6, 0, 0.8]", "lens\"\naxis = [0, 0, 1]", "lens\"\naxis = [0.6, 0, 0.8]"),
+    ("orbit.period", "\"50 min\"", "100 min", "50 min"),
+    (
+        "torque.torque",
+        "[0.1, 0, 0]",
+        "{ csv = \"push.csv\", columns = [\"x\", \"y\", \"z\"], between = \"steps\" }",
+        "[0.1, 0, 0]",
+    ),
+];
+
+/// A point of a sweep over laws, wheels, angles and orbits is the file with its values.
+#[test]
+fn laws_wheels_angles_and_orbits_are_swept() {
+    let folder = folder("laws_wheels_angles_and_orbits_are_swept");
+    fs::write(folder.join("push.csv"), "t,x,y,z\n0,0.01,0.02,-0.01\n1.7,0,0.1,0\n").unwrap();
+    let before = rows(&folder, &held(&[], "")).pop().unwrap();
+    for (key, value, old, new) in VARIED {
+        let text = held(&[], &format!("[sweep]\n{key} = [{value}]\n"));
+        fs::write(folder.join("swept.toml"), text).unwrap();
+        printed(&folder, &["sweep", "swept.toml", "--out", "."]);
+        let table = fs::read_to_string(folder.join("swept.sweep.csv")).unwrap();
+        let line = table.lines().nth(1).unwrap();
+        let expected = rows(&folder, &held(&[(old, new)], "")).pop().unwrap();
+        assert_ne!(before, expected, "{key}");
+        let numbers: Vec<f64> = line.split(',').filter_map(|cell| cell.parse().ok()).collect();
+        let ends = numbers.windows(expected.len()).any(|part| part == expected);
+        assert!(ends, "{key}: {line}\n{expected:?}");
+    }
+}
+
+/// Members draw values of laws, wheels, angles and orbits, beside a torque of a table; another table makes another ensemble.
+#[test]
+fn laws_wheels_angles_and_orbits_are_drawn() {
+    let folder = folder("laws_wheels_angles_and_orbits_are_drawn");
+    let push = "t,x,y,z\n0,0.01,0.02,-0.01\n1.7,0,0.1,0\n";
+    fs::write(folder.join("push.csv"), push).unwrap();
+    for (key, value, old, new) in VARIED {
+        let drawn = match value.parse::<f64>() {
+            Ok(number) => format!("{{ mean = {number}, deviation = 0 }}"),
+            Err(_) if value.starts_with('"') => format!("{{ mean = {value}, deviation = 0 }}"),
+            Err(_) => {
+                let (first, rest) = value[1..].split_once(',').unwrap();
+                format!("[{{ mean = {first}, deviation = 0 }}, {rest}")
+            }
+        };
+        let ensemble = format!("[ensemble]\nmembers = 2\ndraw.{key} = {drawn}\n");
+        let (file, name) = (format!("{key}.toml"), format!("{key}.ensemble"));
+        fs::write(folder.join(&file), held(&[], &ensemble)).unwrap();
+        printed(&folder, &["ensemble", &file, "--out", "."]);
+        let expected = rows(&folder, &held(&[(old, new)], "")).pop().unwrap();
+        let store = liestep_ensemble::Store::folder(folder.join(name)).unwrap();
+        let (_, path) = store.files().unwrap().pop().unwrap();
+        let columns = liestep_ensemble::Store::read(&path).unwrap().rows.columns;
+        // The columns of the file follow the time in a table, and are the first of a member.
+        let numbers: Vec<f64> = columns.iter().take(expected.len() - 1).map(|column| column[0]).collect();
+        assert_eq!(numbers, expected[1..], "{key}");
+    }
+    // Other numbers in the table make another ensemble.
+    fs::write(folder.join("push.csv"), push.replace("0.02", "0.03")).unwrap();
+    refuses(&folder, &["ensemble", "wheel.roll.k.toml", "--out", "."], 4, "is of another plan");
+}
+
+/// A name that no table has, or a table without a key, is a mistake of a sweep and of a draw.
+#[test]
+fn mistakes_of_listed_tables_have_their_place() {
+    let folder = folder("mistakes_of_listed_tables_have_their_place");
+    fs::write(folder.join("push.csv"), "t,x,y,z\n0,0.01,0.02,-0.01\n").unwrap();
+    for (more, message) in [
+        ("[sweep]\nwheel.pitch.k = [1]\n", "no `wheel` is called `pitch`, but roll, wheel-2"),
+        ("[sweep]\nwheel.roll = [1]\n", "a key is missing behind `roll`"),
+        (
+            "[ensemble]\nmembers = 2\ndraw.wheel.pitch.k = { from = 1, to = 2 }\n",
+            "no `wheel` is called `pitch`, but roll, wheel-2",
+        ),
+        ("[ensemble]\nmembers = 2\ndraw.pointing.lens = { from = 1, to = 2 }\n", "a key is missing behind `lens`"),
+        ("[ensemble]\nmembers = 2\ndraw.wheel.roll.inertia = { from = -1, to = 2 }\n", "above zero"),
+        (
+            "[ensemble]\nmembers = 2\ndraw.start.velocity = [{ from = 0, to = 1 }, 0, 0]\nhistogram.len = { from = 0, to = 1, count = \
+             2 }\n",
+            "the `columns` of the file have no `len`, but q_w",
+        ),
+        (
+            "[ensemble]\nmembers = 2\ndraw.start.velocity = [{ from = 0, to = 1 }, 0, 0]\nhistogram.lens = { from = 1, to = 1, count = \
+             2 }\n",
+            "a histogram is `{ from",
+        ),
+        (
+            "[ensemble]\nmembers = 2\ndraw.orbit.period = { from = 6000, to = 7000 }\n[[event]]\nname = \"low\"\ncolumn = \
+             \"lens\"\nvalue = 1\n",
+            "an event knows the orbit",
+        ),
+    ] {
+        let told = refused(&folder, &held(&[], more));
+        assert!(told.contains(message), "{more}: {told}");
     }
 }

@@ -258,7 +258,7 @@ fn units_have_their_sizes() {
     for (moment, spin, field, duration) in [
         ("\"1 slug ft²\"", "\"2 N m s\"", "\"0.25 G\"", "\"0.001 d\""),
         ("\"1355817.9483314004 kg mm²\"", "\"2000 mN m s\"", "\"25 µT\"", "\"86.4 s\""),
-        ("\"13558.179483314004 kg cm^2\"", "\"2 kg m^2/s\"", "\"25000 nT\"", "\"1.44 min\""),
+        ("\"13558.179483314004 kg*cm^2\"", "\"2 kg·m^2/s\"", "\"25000 nT\"", "\"1.44 min\""),
     ] {
         let apart = crate::called::apart(&si, &scene(moment, spin, field, duration));
         assert!(apart < 1e-10, "{moment}: {apart:e}");
@@ -298,4 +298,55 @@ fn draws_have_units_of_one_quantity() {
     let other =
         member("{ from = 0.5, to = 1 }\ndraw.start.velocity = [0, 0, { from = \"0 deg/s\", to = \"10 deg/s\" }]");
     assert_eq!(even, other);
+}
+
+/// The files of the guide's satellite: its commands print the page's lines, and the camera is turned by the leak as an oscillator
+/// is by a force.
+#[test]
+fn the_satellite_of_the_guide() {
+    let guide = include_str!("../../../src/guide/satellite.md");
+    let listings = |kind: &str| -> Vec<&str> {
+        let fence = format!("```{kind}\n");
+        guide.split(&fence).skip(1).map(|rest| rest.split("```").next().unwrap()).collect()
+    };
+    let folder = folder("the_satellite_of_the_guide");
+    let [scene, sweep] = listings("toml")[..] else { panic!("two scenes") };
+    let [of_run, of_ensemble] = listings("text")[..] else { panic!("two texts") };
+    fs::write(folder.join("thruster.csv"), listings("csv")[0]).unwrap();
+    fs::write(folder.join("satellite.toml"), scene).unwrap();
+    printed(&folder, &["check", "satellite.toml"]);
+    // The sizes of files are those of a page, which changes with the program.
+    let lines = |text: &str| text.lines().filter(|line| !line.ends_with(" kB")).collect::<Vec<_>>().join("\n");
+    let told = printed(&folder, &["run", "satellite.toml", "--csv", "--html"]);
+    assert_eq!(lines(&told), lines(of_run));
+    assert_eq!(printed(&folder, &["ensemble", "satellite.toml"]), of_ensemble);
+    let again = printed(&folder, &["report", "satellite.toml"]);
+    assert_eq!(lines(&again).replace("0 of them now", "60 of them now"), of_ensemble.trim_end());
+    fs::write(folder.join("satellite.toml"), format!("{scene}{sweep}")).unwrap();
+    printed(&folder, &["sweep", "satellite.toml"]);
+    let table = fs::read_to_string(folder.join("out/satellite.sweep.csv")).unwrap();
+    assert_eq!(table.lines().count(), 7, "{table}");
+    // From rest at the local vertical, about each axis: J θ'' + k_d θ' + k_p θ = τ.
+    let still = scene.replace("\"4 deg\", \"-2 deg\", \"6 deg\"", "0, 0, 0");
+    let row = rows(&folder, still.split("[ensemble]").next().unwrap()).pop().unwrap();
+    for (at, inertia, torque) in [(2, 12.0, 0.002), (3, 14.0, -0.001), (4, 9.0, 0.0015)] {
+        let (mut angle, mut rate, h) = (0.0, 0.0, 1e-3);
+        for _ in 0..20_000 {
+            rate += h * (torque - 1.0 * rate - 0.02 * angle) / inertia;
+            angle += h * rate;
+        }
+        assert!((row[at] - angle).abs() < 0.05 * f64::abs(angle), "{row:?} {angle}");
+    }
+    // The histogram counts the members by the column of their rows.
+    let store = liestep_ensemble::Store::folder(folder.join("out/satellite.ensemble")).unwrap();
+    let files = store.files().unwrap();
+    let angles =
+        files.iter().flat_map(|(_, path)| liestep_ensemble::Store::read(path).unwrap().rows.columns[0].clone());
+    let angles: Vec<f64> = angles.map(f64::to_degrees).collect();
+    for part in 0..6_u8 {
+        let from = f64::from(part) * 0.5;
+        let count = angles.iter().filter(|angle| (from..from + 0.5).contains(*angle)).count();
+        let line = of_ensemble.lines().find(|line| line.trim_start().starts_with(&format!("{from} deg to"))).unwrap();
+        assert_eq!(line.split_whitespace().nth(5).unwrap(), count.to_string(), "{line}");
+    }
 }

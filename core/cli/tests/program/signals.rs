@@ -121,16 +121,6 @@ fn mistakes_of_signals_have_their_place() {
               up = { times = [0], values = [[0, 0, 1]], between = \"steps\" }\n";
     assert!(refused(&folder, &format!("{scene}{up}")).contains("`up` of `gravity` can't change with time"));
     let pulse = thruster(PULSE, "4");
-    for (more, message) in [
-        ("[ensemble]\nmembers = 2\n[ensemble.draw]\nbody.moments = [{ from = 1, to = 1.1 }, 2, 2.5]\n", "ensemble"),
-        ("density = { turn = 1 }\n", "density"),
-    ] {
-        let text = if more.starts_with('[') {
-            pulse.clone() + more
-        } else {
-            pulse.replace("[output]", &format!("{more}[output]"))
-        };
-        assert!(refused(&folder, &text).contains(message), "{more}");
-    }
+    assert!(refused(&folder, &pulse.replace("[output]", "density = { turn = 1 }\n[output]")).contains("density"));
     assert!(refused(&folder, &pulse.replace("step = 0.4", "accuracy = 1e-3")).contains("accuracy"));
 }

@@ -112,7 +112,7 @@ fn a_sweep_of_several_bodies() {
     let first_passing = run.happenings()[0].sample.time;
     assert_eq!(found[12..], [1.0, first_passing]);
     let wrong = message(&format!("{text}[sweep]\njoint.elbow.damping = [1, 2]\n"));
-    assert_eq!(wrong, "joints.toml:46:7: no `joint` is called `elbow`");
+    assert_eq!(wrong, "joints.toml:46:7: no `joint` is called `elbow`, but joint-1, joint-2, joint-3, joint-4");
 }
 
 fn free_pin(keys: &str, rest: &str) -> String {

@@ -1,10 +1,13 @@
 //! Steps with inputs: forces and other values of parameters, and the derivatives of a step by state and force.
 
-use liestep::__private::forced;
-use liestep::StepError;
-use liestep::motion::{Propagator, StepReport};
+use std::sync::Arc;
 
-use super::stepper::Whole;
+use liestep::__private::forced;
+use liestep::motion::{Propagator, StepReport};
+use liestep::{SetupError, StepError};
+
+use super::limit::Limit;
+use super::stepper::{Whole, check_length};
 use super::tangent::TangentCode;
 use crate::code::Backend;
 
@@ -39,6 +42,50 @@ impl<B: Backend<f64>> Whole<B> {
         self.see(&mut next);
         state.copy_from_slice(&next);
         Ok(report)
+    }
+
+    /// Takes other numbers for the parameters, and another step `h`, s; constants of a step that depend on nothing that changes
+    /// aren't folded anew. States have values in space as they were: [`adopt`](Propagator::adopt) them where one is another.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`with`](Self::with), after which the stepper is as it was.
+    pub fn take(&mut self, numbers: &[f64], h: f64) -> Result<(), SetupError> {
+        check_length("parameters", numbers, self.numbers.len())?;
+        let is_known = |(at, folds): (usize, &bool)| !folds || self.numbers[at].to_bits() == numbers[at].to_bits();
+        if self.h.to_bits() != h.to_bits() || !self.codes.folds.iter().enumerate().all(is_known) {
+            *self = self.with(numbers, h)?;
+            return Ok(());
+        }
+        self.declaration().check(numbers)?;
+        match Arc::get_mut(&mut self.numbers) {
+            Some(own) => own.copy_from_slice(numbers),
+            None => self.numbers = numbers.into(),
+        }
+        Ok(())
+    }
+
+    /// The body velocity of a state with other [numbers](Self::numbers) for the parameters; NaN where there is none.
+    #[must_use]
+    pub fn velocity_with(&self, state: &[f64], numbers: &[f64]) -> Vec<f64> {
+        let found = self.limited(state, numbers).map(|(limit, momentum)| limit.velocity(momentum));
+        found.unwrap_or_else(|| vec![f64::NAN; self.codes.sizes.n])
+    }
+
+    /// The energy of a state with other [numbers](Self::numbers) for the parameters, in the declaration's unit; NaN where there
+    /// is none.
+    #[must_use]
+    pub fn energy_with(&self, state: &[f64], numbers: &[f64]) -> f64 {
+        let energy = |(limit, momentum): (Limit<'_, B>, &[f64])| limit.energy(&limit.velocity(momentum));
+        self.limited(state, numbers).map_or(f64::NAN, energy)
+    }
+
+    /// The continuous limit and the momentum at a state; none for slices of other lengths.
+    fn limited<'s>(&'s self, state: &'s [f64], numbers: &'s [f64]) -> Option<(Limit<'s, B>, &'s [f64])> {
+        let (sizes, codes) = (&self.codes.sizes, &*self.codes);
+        let state = self.checked(state).ok().filter(|_| numbers.len() == self.numbers.len())?;
+        let limit = Limit { codes, numbers, advected: &state[sizes.advected()..sizes.history()] };
+        Some((limit, &state[sizes.momentum()..sizes.advected()]))
     }
 
     /// Makes one step with a constant force, as [`step_forced`](Propagator::step_forced), and returns the derivatives of the state

@@ -19,7 +19,7 @@
 //! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
 //! `methods → {collocation, rotating, density}`, `collocation → stepper`,
 //! `{density → varied → course, pace} → {stepper, lengths}`,
-//! `inputs → tangent → composed` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
+//! `inputs → {tangent → composed, limit}` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
 //! {codes, linear}`.
 
 mod abreast;

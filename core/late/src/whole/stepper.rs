@@ -434,20 +434,11 @@ impl<B: Backend<f64>> Propagator for Whole<B> {
     }
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
-        let sizes = &self.codes.sizes;
-        let found = self.checked(state).map(|state| {
-            let limit = self.numbered().limit(&state[sizes.advected()..sizes.history()]);
-            limit.velocity(&state[sizes.momentum()..sizes.advected()])
-        });
-        write_or_nan(found.ok(), velocity);
+        write_or_nan(Some(self.velocity_with(state, &self.numbers)), velocity);
     }
 
     fn energy(&self, state: &[f64]) -> f64 {
-        let sizes = &self.codes.sizes;
-        self.checked(state).map_or(f64::NAN, |state| {
-            let limit = self.numbered().limit(&state[sizes.advected()..sizes.history()]);
-            limit.energy(&limit.velocity(&state[sizes.momentum()..sizes.advected()]))
-        })
+        self.energy_with(state, &self.numbers)
     }
 
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {

@@ -123,21 +123,6 @@ impl<B: Backend<f64>> Whole<B> {
         layout.memory += MEMORY;
         Varied { whole: self.clone(), course: None, lengths: Lengths::Equal, layout, stages }
     }
-
-    /// Takes other numbers for a single step of another length, and folds its constants anew if they depend on a change.
-    fn take(&mut self, numbers: &[f64], h: f64) -> Result<(), SetupError> {
-        let is_known = |(at, folds): (usize, &bool)| !folds || self.numbers[at].to_bits() == numbers[at].to_bits();
-        let is_folded = self.h.to_bits() == h.to_bits() && self.codes.folds.iter().enumerate().all(is_known);
-        if !is_folded {
-            self.stages = Stages::of(&self.codes, numbers, h, None)?;
-            self.h = h;
-        }
-        match Arc::get_mut(&mut self.numbers) {
-            Some(own) => own.copy_from_slice(numbers),
-            None => self.numbers = numbers.into(),
-        }
-        Ok(())
-    }
 }
 
 impl<B: Backend<f64>> Varied<B> {

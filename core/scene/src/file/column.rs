@@ -257,6 +257,9 @@ impl Output {
         let Some(keys) = &self.columns else { return Ok(default.iter().filter_map(|key| find(key)).collect()) };
         let column = |key: &Spanned<String>| {
             find(key.get_ref()).ok_or_else(|| {
+                if let Some(column) = known.iter().find(|column| column.names().any(|name| name == key.get_ref())) {
+                    return (key.span(), format!("`{}` is a part of `{}`: write that", key.get_ref(), column.key));
+                }
                 let known: Vec<_> = known.iter().map(|column| format!("`{}`", column.key)).collect();
                 let message = format!("unknown variant `{}`, expected one of {}", key.get_ref(), known.join(", "));
                 (key.span(), advised(&message))

@@ -8,10 +8,11 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::file::effects::EFFECTS;
+use crate::file::histogram::{self, EndHistogram};
 use crate::file::mistake::SpanMessage;
 use crate::file::quantity::ratio;
 use crate::file::scene::SceneFile;
-use crate::file::tables::{Keys, dotted, ends};
+use crate::file::tables::{Keys, dotted, ends, measured};
 
 /// The scenes of an ensemble. Each draws its values with the caller's random numbers.
 #[derive(Clone)]
@@ -26,7 +27,9 @@ pub struct SceneEnsemble {
     /// Number of members that are simulated together and stored in one file, and at most lost when a run is
     /// interrupted.
     pub chunk: Option<u64>,
-    /// The text of the whole file, which identifies the ensemble.
+    /// The histograms of columns at the ends of members.
+    pub histograms: Vec<EndHistogram>,
+    /// The text of the whole file, with the values of its signals behind it, which identifies the ensemble.
     pub text: String,
     pub(crate) axes: Vec<Axis>,
     pub(crate) path: PathBuf,
@@ -86,10 +89,15 @@ const MOST_MEMBERS: u64 = 1_000_000_000;
 pub(crate) const DRAW: &str = "a value is drawn by `{ from = …, to = … }`, each between as likely, or by \
                     `{ mean = …, deviation = … }`, normally: two numbers, or texts with units of one quantity; a \
                     deviation may be one of the mean, as \"10 %\"";
-const PARTS: &str = "`ensemble` has `members`, may have `seed`, `every` and `chunk`, and says in `draw` what is drawn";
+const PARTS: &str = "`ensemble` has `members`, may have `seed`, `every`, `chunk` and a `histogram`, and says in `draw` \
+                     what is drawn";
+/// Lists of tables, in which a table is found by its name.
+pub(crate) const LISTED: [&str; 3] = ["control", "wheel", "pointing"];
+
 /// The tables whose values can be drawn.
 fn drawable() -> impl Iterator<Item = &'static str> {
-    ["body", "orbit", "lagrangian", "force"].into_iter().chain(EFFECTS.iter().map(|effect| effect.key)).chain(["start"])
+    let effects = EFFECTS.iter().map(|effect| effect.key);
+    ["body", "orbit", "lagrangian", "force"].into_iter().chain(effects).chain(["start"]).chain(LISTED)
 }
 
 impl SceneEnsemble {
@@ -99,6 +107,18 @@ impl SceneEnsemble {
         components.filter_map(|component| match component {
             Component::Draw(draw) => Some((draw.name.as_str(), draw.spread)),
             Component::Fixed(_) => None,
+        })
+    }
+}
+
+impl SceneEnsemble {
+    /// Whether a number is drawn by which columns are read from a state: of the orbit, of the angle of an axis, or of the axis
+    /// or the inertia of a wheel.
+    #[must_use]
+    pub fn draws_what_columns_read(&self) -> bool {
+        self.axes.iter().any(|Axis { keys, .. }| {
+            let of = |at: usize| keys.get(at).map_or("", |key| key.get_ref().as_str());
+            ["orbit", "pointing"].contains(&of(0)) || of(0) == "wheel" && ["axis", "inertia"].contains(&of(2))
         })
     }
 }
@@ -132,6 +152,7 @@ pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -
         seed: 0,
         every: None,
         chunk: None,
+        histograms: Vec::new(),
         text,
         axes: Vec::new(),
         path,
@@ -153,6 +174,7 @@ pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -
             "seed" => ensemble.seed = whole(0..=i64::MAX.unsigned_abs())?,
             "every" => ensemble.every = Some(whole(1..=MOST_MEMBERS)?),
             "chunk" => ensemble.chunk = Some(whole(1..=MOST_MEMBERS)?),
+            "histogram" => ensemble.histograms = histogram::read(value)?,
             "draw" => match value.get_ref() {
                 DeValue::Table(draws) => {
                     ensemble.axes = ends(draws, &leads_on).into_iter().map(axis).collect::<Result<_, _>>()?;
@@ -250,19 +272,4 @@ fn drawn(table: &DeTable<'_>, span: &Range<usize>, name: String) -> Result<Draw,
         Spread::Normal { mean: first, deviation: second }
     };
     Ok(Draw { name, spread, unit, span })
-}
-
-/// A number and its unit.
-pub(crate) fn measured(value: &DeValue<'_>) -> Option<(f64, String)> {
-    let (number, unit) = match value {
-        DeValue::Integer(number) if number.radix() == 10 => (number.as_str().to_owned(), String::new()),
-        DeValue::Float(number) => (number.as_str().to_owned(), String::new()),
-        DeValue::String(text) => {
-            let (number, unit) = text.trim().split_once(' ')?;
-            (number.to_owned(), unit.trim().to_owned())
-        }
-        _ => return None,
-    };
-    let number: f64 = number.parse().ok()?;
-    (number.is_finite() && !unit.contains(['"', '\\']) && !unit.chars().any(char::is_control)).then_some((number, unit))
 }

@@ -1,12 +1,15 @@
 //! The scenes of an ensemble, and conflicts with the file's other tables.
 
+use std::ops::Range;
 use std::path::Path;
 
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
+use crate::file::column::Column;
+use crate::file::control::{Motor, Wheel};
 use crate::file::document::scene;
-use crate::file::draws::{Axis, Component, DRAW, SceneEnsemble, Spread, parts};
+use crate::file::draws::{Axis, Component, DRAW, LISTED, SceneEnsemble, Spread, parts};
 use crate::file::event::{Event, Quantity};
 use crate::file::mistake::{Mistake, SpanMessage, place_of};
 use crate::file::scene::SceneFile;
@@ -70,10 +73,44 @@ impl SceneEnsemble {
     }
 }
 
-/// The mistake of a file with parameters over time, which members don't have.
-fn over_time(file: &SceneFile) -> Option<SpanMessage> {
-    let message = "the members of an ensemble have no parameters over time: leave them out, or `ensemble`";
-    file.over_time.first().map(|one| (one.span.clone(), message.to_owned()))
+/// The signals of a file as lines behind its text, which identifies an ensemble: those of tables beside the scene, too.
+fn signals(file: &SceneFile) -> impl Iterator<Item = String> {
+    let of_wheel = |wheel: &Wheel| if let Motor::Signal(signal) = &wheel.motor { Some(signal.clone()) } else { None };
+    let over_time = file.over_time.iter().filter_map(|one| one.signal().cloned());
+    let all: Vec<_> = over_time.chain(file.wheel.iter().filter_map(of_wheel)).collect();
+    all.into_iter().map(|signal| format!("\n# {signal:?}"))
+}
+
+/// Conflicts with columns: those that a member has none of, and those that its events can't know; `at` finds the place of keys.
+fn of_columns(ensemble: &SceneEnsemble, file: &SceneFile, at: &dyn Fn(&[&str]) -> Range<usize>) -> Option<SpanMessage> {
+    let wrong = |keys: &[&str], message: String| Some((at(keys), message));
+    if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
+        let names = column.names().collect::<Vec<_>>().join(", ");
+        let why = "is measured from the start of a run; leave it out";
+        return wrong(&["output", "columns"], format!("an ensemble keeps states, and `{names}` {why}"));
+    }
+    let names: Vec<&str> = file.columns().iter().flat_map(Column::names).collect();
+    if let Some(one) = ensemble.histograms.iter().find(|one| !names.contains(&one.column.as_str())) {
+        let message = format!("the `columns` of the file have no `{}`, but {}", one.column, names.join(", "));
+        return Some((one.span.clone(), message));
+    }
+    let names_energy = |event: &Event| matches!(event.quantity, Quantity::Energy(_));
+    let keeps_energy = file.columns().iter().any(|column| column.key() == "energy");
+    if file.changing().is_some() && (file.event.iter().any(names_energy) || keeps_energy && !file.event.is_empty()) {
+        let message = "where something changes with time the energy of a member isn't known between its steps, where events are: leave `energy` out of `columns` and events, or `ensemble` out of the file";
+        return wrong(&["output", "columns"], message.to_owned());
+    }
+    let is_read = |column: &Column| ["pointing", "roll-pitch-yaw", "wheel-speeds"].contains(&column.key());
+    let angles = file.group.energy() + 2;
+    let is_seen = |event: &Event| matches!(event.quantity, Quantity::Column(place, _) if place >= angles);
+    if ensemble.draws_what_columns_read()
+        && (file.event.iter().any(is_seen) || !file.event.is_empty() && file.columns().iter().any(is_read))
+    {
+        let message = "an event knows the orbit, the angles and the wheels of the file, not those that a member draws: leave \
+                       the columns of angles and wheels out, or the event, or draw something else";
+        return wrong(&["event"], message.to_owned());
+    }
+    None
 }
 
 /// The ensemble of a table; `file` is the scene without draws.
@@ -85,30 +122,18 @@ pub(crate) fn read(
 ) -> Result<SceneEnsemble, Mistake> {
     let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut ensemble = parts((path, text), table).map_err(located)?;
+    ensemble.text.extend(signals(file));
     let wrong = |keys: &[&str], message: String| Err(located((span(document, keys), message)));
     if file.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
     }
-    over_time(file).map_or(Ok(()), Err).map_err(located)?;
     let has_a_pace = file.paced().is_some();
     if has_a_pace || file.run.density.is_some() {
         let keys = if has_a_pace { ["lagrangian", "pace"] } else { ["run", "density"] };
         let why = "members make the same number of steps, and those of a";
         return wrong(&keys, format!("{why} `{}` end at different times: leave it out", keys[1]));
     }
-    if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
-        let names = column.names().collect::<Vec<_>>().join(", ");
-        let why = "is measured from the start of a run; leave it out";
-        return wrong(&["output", "columns"], format!("an ensemble keeps states, and `{names}` {why}"));
-    }
-    let names_energy = |event: &Event| matches!(event.quantity, Quantity::Energy(_));
-    let keeps_energy = file.columns().iter().any(|column| column.key() == "energy");
-    if file.turning().next().is_some()
-        && (file.event.iter().any(names_energy) || keeps_energy && !file.event.is_empty())
-    {
-        let message = "beside an orbit the energy of a member isn't known between its steps, where events are: leave `energy` out of `columns` and events, or `ensemble` out of the file";
-        return wrong(&["output", "columns"], message.to_owned());
-    }
+    of_columns(&ensemble, file, &|keys| span(document, keys)).map_or(Ok(()), Err).map_err(located)?;
     let written = table.get_ref().as_table().and_then(|table| table.get("every"));
     if let (Some(every), Some(steps), Some(value)) = (ensemble.every, file.steps(), written)
         && every > steps
@@ -124,6 +149,10 @@ pub(crate) fn read(
         for key in tables {
             let name = key.get_ref();
             let inner = here.and_then(|table| table.get(name.as_str()));
+            // A table of a list is found by its name when a value is set.
+            if inner.is_some_and(|inner| inner.get_ref().is_array()) {
+                break;
+            }
             if inner.is_none() {
                 let message =
                     format!("the file has no `{name}`, of which something could be drawn; write the table `[{name}]`");
@@ -137,11 +166,13 @@ pub(crate) fn read(
     let axes = &ensemble.axes;
     let is_drawn = |name: &str| axes.iter().any(|axis| axis.keys.first().is_some_and(|key| key.get_ref() == name));
     // A drawn Lagrangian, force or orbit affects other tables, too: all of them are read anew.
-    let all = ["lagrangian", "force", "orbit"].iter().any(|name| is_drawn(name)) || file.run.steps_per_orbit.is_some();
+    let all = ["lagrangian", "force", "orbit"].iter().chain(&LISTED).any(|name| is_drawn(name))
+        || file.over_time.iter().any(|one| is_drawn(&one.table))
+        || file.run.steps_per_orbit.is_some();
     let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
     ensemble.tables = tables.into_inner().into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
     ensemble.like = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));
-    // SpanMessage units and keys are found by reading two members.
+    // Wrong units and keys are found by reading two members.
     for end in [true, false] {
         let value = |(_, spread)| match spread {
             Spread::Uniform { from: value, .. } if end => value,

@@ -11,6 +11,7 @@ pub(crate) mod ensemble;
 pub(crate) mod euler;
 pub(crate) mod event;
 pub(crate) mod group;
+pub(crate) mod histogram;
 pub(crate) mod joint;
 pub(crate) mod kepler;
 pub(crate) mod key;

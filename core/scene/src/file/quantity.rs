@@ -80,9 +80,9 @@ pub(crate) fn in_si<Q: Quantity>(number: f64, unit: &str) -> Option<f64> {
     Some(number * size).filter(|number| number.is_finite())
 }
 
-/// A unit with powers as digits above the line.
+/// A unit with powers as digits above the line, and spaces for products.
 fn plain(unit: &str) -> String {
-    unit.replace("^2", "²").replace("^3", "³")
+    unit.replace("^2", "²").replace("^3", "³").replace(['*', '·'], " ")
 }
 
 /// The size of a unit in another one of the same quantity; none where no quantity has both.

@@ -5,10 +5,9 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::file::draws::measured;
 use crate::file::mistake::{Mistake, SpanMessage};
 use crate::file::scene::Sweep;
-use crate::file::tables::{Document, Keys, dotted, ends, set};
+use crate::file::tables::{Document, Keys, dotted, ends, measured, set};
 
 /// Most scenes of a sweep, each of which is a run.
 const MOST_POINTS: usize = 10_000;

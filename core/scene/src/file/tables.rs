@@ -49,17 +49,11 @@ pub(crate) fn dotted(keys: &[Spanned<String>]) -> String {
     keys.iter().map(|key| key.get_ref().as_str()).collect::<Vec<_>>().join(".")
 }
 
-/// The table among several of a key with this `name`; one without is called by the key and its number, as `joint-1`.
-fn called<'t, 'a>(entries: &'t mut DeArray<'a>, key: &str, name: &str) -> Option<&'t mut DeTable<'a>> {
-    let tables = entries.iter_mut().enumerate().filter_map(|(number, entry)| match entry.get_mut() {
-        DeValue::Table(table) => Some((number, table)),
-        _ => None,
-    });
-    let is_called = |(number, table): &(usize, &mut DeTable<'a>)| match table.get("name") {
-        Some(own) => own.get_ref().as_str() == Some(name),
-        None => name == format!("{key}-{}", number + 1),
-    };
-    tables.into_iter().find(is_called).map(|(_, table)| table)
+/// The names by which tables of a key are called: their own, or the key and their numbers, as `joint-1`.
+fn names(entries: &DeArray<'_>, key: &str) -> Vec<String> {
+    let own = |entry: &Spanned<DeValue<'_>>| entry.get_ref().get("name")?.get_ref().as_str().map(str::to_owned);
+    let name = |(number, entry)| own(entry).unwrap_or_else(|| format!("{key}-{}", number + 1));
+    entries.iter().enumerate().map(name).collect()
 }
 
 /// Sets the value of these keys, in new tables where they don't exist. A table among several of one key is found
@@ -80,9 +74,34 @@ pub(crate) fn set<'a>(
         DeValue::Table(inner) => set(inner, rest, value),
         DeValue::Array(entries) => {
             let [name, rest @ ..] = rest else { return Ok(()) };
-            let unknown = || (name.span(), format!("no `{}` is called `{}`", key.get_ref(), name.get_ref()));
-            set(called(entries, key.get_ref(), name.get_ref()).ok_or_else(unknown)?, rest, value)
+            let (span, key, name) = (name.span(), key.get_ref().as_str(), name.get_ref().as_str());
+            let names = names(entries, key);
+            // The columns of a wheel without a name have `wheel_1`.
+            let is_called = |own: &String| own == name || *own == name.replacen('_', "-", 1);
+            let found = names.iter().position(is_called).and_then(|at| entries.get_mut(at));
+            match found.map(Spanned::get_mut) {
+                Some(DeValue::Table(_)) if rest.is_empty() => {
+                    Err((span, format!("a key is missing behind `{name}`, as in `{key}.{name}.KEY`")))
+                }
+                Some(DeValue::Table(table)) => set(table, rest, value),
+                _ => Err((span, format!("no `{key}` is called `{name}`, but {}", names.join(", ")))),
+            }
         }
         _ => Err((key.span(), format!("`{}` isn't a table", key.get_ref()))),
     }
+}
+
+/// A number and its unit.
+pub(crate) fn measured(value: &DeValue<'_>) -> Option<(f64, String)> {
+    let (number, unit) = match value {
+        DeValue::Integer(number) if number.radix() == 10 => (number.as_str().to_owned(), String::new()),
+        DeValue::Float(number) => (number.as_str().to_owned(), String::new()),
+        DeValue::String(text) => {
+            let (number, unit) = text.trim().split_once(' ')?;
+            (number.to_owned(), unit.trim().to_owned())
+        }
+        _ => return None,
+    };
+    let number: f64 = number.parse().ok()?;
+    (number.is_finite() && !unit.contains(['"', '\\']) && !unit.chars().any(char::is_control)).then_some((number, unit))
 }

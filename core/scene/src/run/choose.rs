@@ -80,7 +80,7 @@ impl Course for SceneCourse {
     fn over(&self, [start, length]: [f64; 2], places: &mut [f64]) {
         let mut file = self.file.borrow_mut();
         let has_all = file.set_over([start, length]);
-        let now = self.sum.described(&numbers(&file, &self.J, self.body.as_ref(), start + length * 0.5));
+        let now = self.sum.described(&numbers(&file, [&self.J; 2], self.body.as_ref(), start + length * 0.5));
         match now {
             Ok(now) if has_all => places.copy_from_slice(&now),
             _ => places.fill(f64::NAN),

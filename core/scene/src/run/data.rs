@@ -62,7 +62,9 @@ impl Data {
     pub(crate) fn of(file: &SceneFile, J: &Inertia) -> Result<Self, Stop> {
         let body = LibraryBody::of(file, *J);
         let sum = sum(file, body.as_ref()).map_err(|error| late_error(&error))?.ok_or_else(nothing)?;
-        let numbers = sum.described(&numbers(file, J, body.as_ref(), 0.0)).map_err(|error| late_error(&error))?;
+        let numbers = sum
+            .described(&numbers(file, [J, &with_wheels(file, J)], body.as_ref(), 0.0))
+            .map_err(|error| late_error(&error))?;
         Ok(Self { sum, numbers })
     }
 
@@ -81,15 +83,18 @@ pub(crate) fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
     own.map_err(|error| Stop::Other(error.to_string()))
 }
 
-/// The parameters of all terms at a time, in order.
-pub(crate) fn numbers(file: &SceneFile, J: &Inertia, body: Option<&LibraryBody>, time: f64) -> Vec<f64> {
+/// The inertia of the body with its wheels locked to it, at which the gravity gradient pulls.
+pub(crate) fn with_wheels(file: &SceneFile, J: &Inertia) -> Inertia {
+    if file.wheel.is_empty() { *J } else { Inertia::new(J.as_matrix() + of_wheels(&file.wheel)).unwrap_or(*J) }
+}
+
+/// The parameters of all terms at a time, in order; the second inertia is that with the wheels.
+pub(crate) fn numbers(file: &SceneFile, [J, whole]: [&Inertia; 2], body: Option<&LibraryBody>, time: f64) -> Vec<f64> {
     let [lagrangians, forces] =
         [&file.lagrangian, &file.force].map(|own| own.iter().flat_map(|own| own.numbers.iter().copied()));
     let body = body.iter().flat_map(|body| body.numbers.iter().copied());
-    // The gravity gradient pulls at wheels, too.
-    let whole = || Inertia::new(J.as_matrix() + of_wheels(&file.wheel)).unwrap_or(*J);
-    let of = |key: &str| if key == "gravity_gradient" && !file.wheel.is_empty() { whole() } else { *J };
-    let listed = file.effects().flat_map(|(effect, table)| table.numbers(&of(effect.key), file.at(time)));
+    let of = |key: &str| if key == "gravity_gradient" { whole } else { J };
+    let listed = file.effects().flat_map(|(effect, table)| table.numbers(of(effect.key), file.at(time)));
     body.chain(lagrangians).chain(listed).chain(forces).collect()
 }
 

@@ -7,11 +7,11 @@ use liestep::motion::{Layout, Propagator, StepReport};
 use liestep::{SetupError, StepError};
 use nalgebra::{Matrix3, Vector3};
 
-use crate::file::control::{Controller, Motor, Seen, Wheel, entries, fit, of_wheels, readings, stride};
+use crate::file::control::{Controller, Motor, Seen, Wheel, entries, fit, readings, stride};
 use crate::file::law::{Value, within};
 use crate::file::orbit::Time;
 use crate::file::scene::SceneFile;
-use crate::run::data::{LibraryBody, Whole, numbers};
+use crate::run::data::{LibraryBody, Whole, numbers, with_wheels};
 
 /// A body with laws and wheels.
 ///
@@ -22,8 +22,11 @@ pub(crate) struct Devices {
     file: RefCell<SceneFile>,
     /// The moments without those of the wheels about their axes.
     J: Inertia,
+    /// The moments with wheels that are locked to the body.
+    locked: Inertia,
     body: Option<LibraryBody>,
-    whole: Whole,
+    /// The inner stepper, with the numbers of the last step.
+    whole: RefCell<Whole>,
     layout: Layout,
     h: f64,
 }
@@ -75,7 +78,8 @@ impl Devices {
         if !fit(&file.control, &file.wheel, h) {
             return Err(SetupError::Method { cause: "samples the laws between its steps" });
         }
-        let mut all = Self { file: RefCell::new(file), J, body, layout: whole.layout().clone(), whole, h };
+        let (layout, locked) = (whole.layout().clone(), with_wheels(&file, &J));
+        let mut all = Self { file: RefCell::new(file), J, locked, body, layout, whole: whole.into(), h };
         all.layout.memory += all.length();
         Ok(all)
     }
@@ -111,9 +115,14 @@ impl Devices {
         if state.len() == self.layout.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
     }
 
-    /// The inner stepper of a step of this start and length with momenta of the wheels and the held torque; with the length
-    /// zero that of a time.
-    fn held(&self, [start, length]: [f64; 2], momenta: &[f64], torques: &[Vector3<f64>]) -> Result<Whole, StepError> {
+    /// The parameters of a step of this start and length with momenta of the wheels and the held torque; with the length zero
+    /// those of a time.
+    fn numbers(
+        &self,
+        [start, length]: [f64; 2],
+        momenta: &[f64],
+        torques: &[Vector3<f64>],
+    ) -> Result<Vec<f64>, StepError> {
         let mut file = self.file.borrow_mut();
         let is_known = file.set_over([start, length]);
         let (rotor, own, spin) = (file.rotor, file.torque, spin(&file.wheel, momenta));
@@ -123,21 +132,17 @@ impl Devices {
         if let Some(own) = &mut file.torque {
             own.torque.value += torques.iter().sum::<Vector3<f64>>();
         }
-        let all = numbers(&file, &self.J, self.body.as_ref(), start + length * 0.5);
+        let all = numbers(&file, [&self.J, &self.locked], self.body.as_ref(), start + length * 0.5);
         (file.rotor, file.torque) = (rotor, own);
-        let whole = self.whole.declaration().described(&all).ok().filter(|_| is_known);
-        let whole = whole.filter(|numbers| numbers.iter().all(|number| number.is_finite()));
-        let step = if length == 0.0 { self.h } else { length };
-        whole.and_then(|numbers| self.whole.with(&numbers, step).ok()).ok_or(OF_A_LAW)
+        let all = self.whole.borrow().declaration().described(&all).ok().filter(|_| is_known);
+        all.filter(|numbers| numbers.iter().all(|number| number.is_finite())).ok_or(OF_A_LAW)
     }
 
     /// The angular velocity of a state, body frame; NaN if it isn't known.
     fn rate(&self, state: &[f64], memory: &Memory) -> Vector3<f64> {
-        let mut velocity = [f64::NAN; 3];
-        if let Ok(whole) = self.held([self.time(state), 0.0], &memory.momenta, &memory.torques) {
-            whole.velocity(&self.inner(state), &mut velocity);
-        }
-        velocity.into()
+        let numbers = self.numbers([self.time(state), 0.0], &memory.momenta, &memory.torques);
+        let rate = numbers.map(|numbers| self.whole.borrow().velocity_with(&self.inner(state), &numbers));
+        rate.map_or_else(|_| Vector3::repeat(f64::NAN), |rate| Vector3::from_column_slice(&rate))
     }
 
     /// Takes the samples of the step ahead of a state with this velocity.
@@ -209,7 +214,9 @@ impl Devices {
             return Err(OF_A_LAW);
         }
         let mean = memory.momenta.iter().zip(&motors).map(|(momentum, torque)| momentum + torque * length * 0.5);
-        let whole = self.held(span, &mean.collect::<Vec<_>>(), &memory.torques)?;
+        let numbers = self.numbers(span, &mean.collect::<Vec<_>>(), &memory.torques)?;
+        let mut whole = self.whole.borrow_mut();
+        whole.take(&numbers, length).map_err(|_| OF_A_LAW)?;
         let mut next = whole.adopt(&self.inner(state));
         let report = whole.step(&mut next)?;
         memory.momenta.iter_mut().zip(&motors).for_each(|(momentum, torque)| *momentum += torque * length);
@@ -231,8 +238,9 @@ impl Propagator for Devices {
         let rate = Vector3::from_column_slice(velocity.get(..3).unwrap_or(&[f64::NAN; 3]));
         let momentum = |wheel: &Wheel| wheel.inertia * (rate.dot(&wheel.axis) + wheel.speed);
         let momenta: Vec<f64> = self.file.borrow().wheel.iter().map(momentum).collect();
-        let whole = self.held([0.0, 0.0], &momenta, &[]);
-        let whole = whole.map_err(|_| SetupError::NonFinite { what: "momentum of a wheel" })?;
+        let numbers = self.numbers([0.0, 0.0], &momenta, &[]);
+        let numbers = numbers.map_err(|_| SetupError::NonFinite { what: "momentum of a wheel" })?;
+        let whole = self.whole.borrow().with(&numbers, self.h)?;
         let inner = whole.start(attitude, velocity)?;
         // The sample before the first is that of the start.
         let file = self.file.borrow();
@@ -286,7 +294,7 @@ impl Propagator for Devices {
         let wheels = &file.wheel[..];
         let speeds: Vector3<f64> = wheels.iter().map(|wheel| wheel.axis * (wheel.inertia * wheel.speed)).sum();
         let rotor = file.rotor.map(|rotor| rotor.spin.value).unwrap_or_default();
-        let locked = (self.J.as_matrix() + of_wheels(wheels)).try_inverse();
+        let locked = self.locked.as_matrix().try_inverse();
         drop(file);
         let velocity = locked.map(|inverse| inverse * (Vector3::from_column_slice(momentum) - speeds - rotor));
         velocity.and_then(|velocity| self.start(attitude, velocity.as_slice()).ok()).unwrap_or_else(nowhere)
@@ -312,8 +320,9 @@ impl Propagator for Devices {
     fn energy(&self, state: &[f64]) -> f64 {
         let Ok(state) = self.checked(state) else { return f64::NAN };
         let memory = self.memory(state);
-        let whole = self.held([self.time(state), 0.0], &memory.momenta, &memory.torques);
-        let of_body = whole.map_or(f64::NAN, |whole| whole.energy(&self.inner(state)));
+        let numbers = self.numbers([self.time(state), 0.0], &memory.momenta, &memory.torques);
+        let energy = |numbers: Vec<f64>| self.whole.borrow().energy_with(&self.inner(state), &numbers);
+        let of_body = numbers.map_or(f64::NAN, energy);
         let file = self.file.borrow();
         let of_wheel = |(wheel, momentum): (&Wheel, &f64)| momentum * momentum / (2.0 * wheel.inertia);
         of_body + file.wheel.iter().zip(&memory.momenta).map(of_wheel).sum::<f64>()
@@ -321,12 +330,12 @@ impl Propagator for Devices {
 
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
         match self.checked(state) {
-            Ok(state) => self.whole.spatial_momentum(&self.inner(state), momentum),
+            Ok(state) => self.whole.borrow().spatial_momentum(&self.inner(state), momentum),
             Err(_) => momentum.fill(f64::NAN),
         }
     }
 
     fn defect(&self, state: &[f64]) -> f64 {
-        self.checked(state).map_or(f64::NAN, |state| self.whole.defect(&self.inner(state)))
+        self.checked(state).map_or(f64::NAN, |state| self.whole.borrow().defect(&self.inner(state)))
     }
 }
