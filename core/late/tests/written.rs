@@ -112,13 +112,13 @@ where
     E: Regular<Scalar = f64> + Clone,
 {
     let stepper = Stepper::new(effect.clone(), STEP).expect("a stepper");
-    has_the_bits_of_a_method(effect, stepper, (attitude, velocity), (steps, &[1.0]), text)
+    has_the_bits_of_a_method(effect, &stepper, (attitude, velocity), (steps, &[1.0]), text)
 }
 
 /// Whether all steps by this C, by stages of these lengths, are made, and have the bits of this stepper's.
 fn has_the_bits_of_a_method<E, P>(
     effect: &E,
-    stepper: Stepper<E, P>,
+    stepper: &Stepper<E, P>,
     (attitude, velocity): (E::Group, &[f64]),
     (steps, gammas): (u32, &[f64]),
     text: &str,
@@ -178,7 +178,7 @@ fn a_composition_in_c_has_the_bits_of_the_library() {
     let bits = |scheme: CompositionScheme, text: &str| {
         let stepper = Stepper::composed(top(), STEP, scheme).expect("a stepper");
         let gammas: Vec<f64> = scheme.stages().collect();
-        has_the_bits_of_a_method(&top(), stepper, start, (2_000, &gammas), text)
+        has_the_bits_of_a_method(&top(), &stepper, start, (2_000, &gammas), text)
     };
     assert!(bits(CompositionScheme::SUZUKI_4, &text) && bits(CompositionScheme::KAHAN_LI_8, &text));
     let wrong = text.replace("earlier[i] * factor", "earlier[i] * -factor");
