@@ -164,7 +164,7 @@ fn missing_functions_are_told() {
 
 /// Memory of a thousand declarations; `-- --ignored` measures it.
 #[test]
-#[ignore = "takes minutes without optimisation"]
+#[ignore = "takes minutes: `cargo test --release -p liestep-late --test hostile a_thousand -- --ignored --nocapture`"]
 fn a_thousand_declarations_are_kept_in_bounded_memory() {
     let resident = || {
         let pages = std::fs::read_to_string("/proc/self/statm").ok()?;

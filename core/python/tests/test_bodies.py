@@ -9,44 +9,36 @@ import pytest
 
 import liestep as ls
 
-GRAVITY = "gravity = { g = 9.81, up = [0, 0, 1] }"
+
+def two_bodies(name: str, bodies: str, joints: str, step: float) -> ls.Scene:
+    return ls.scene(f"{name}.toml", f"""
+    title = "{name}"
+    gravity = {{ g = 9.81, up = [0, 0, 1] }}
+    body = [{bodies}]
+    joint = [{joints}]
+    run = {{ step = {step}, duration = 1 }}
+    """)
+
+
+def rod(name: str) -> str:
+    return f'{{ name = "{name}", m = 1, moments = [0.1, 0.1, 0.001] }},'
 
 
 def acrobot(step: float, elbow: str = "") -> ls.Scene:
-    text = f"""
-    title = "Two rods"
-    {GRAVITY}
-    body = [
-        {{ name = "upper", m = 1, moments = [0.1, 0.1, 0.001] }},
-        {{ name = "fore", m = 1, moments = [0.1, 0.1, 0.001] }},
-    ]
-    joint = [
+    return two_bodies("acrobot", rod("upper") + rod("fore"), f"""
         {{ name = "shoulder", kind = "pin", bodies = ["space", "upper"], at = [[0, 0, 0], [0, 0, 0.5]],
           axes = [[0, 1, 0], [0, 1, 0]] }},
         {{ name = "elbow", kind = "pin", bodies = ["upper", "fore"], at = [[0, 0, -0.5], [0, 0, 0.5]],
           axes = [[0, 1, 0], [0, 1, 0]]{elbow} }},
-    ]
-    run = {{ step = {step}, duration = 1 }}
-    """
-    return ls.scene("acrobot.toml", text)
+    """, step)
 
 
 def cart(step: float, bodies: str = '["space", "cart"]') -> ls.Scene:
-    text = f"""
-    title = "A cart with a pole"
-    {GRAVITY}
-    body = [
-        {{ name = "cart", m = 1, moments = [1, 1, 1] }},
-        {{ name = "pole", m = 1, moments = [0.1, 0.1, 0.001] }},
-    ]
-    joint = [
+    return two_bodies("cart", '{ name = "cart", m = 1, moments = [1, 1, 1] },' + rod("pole"), f"""
         {{ name = "rail", kind = "slider", bodies = {bodies}, at = [[0, 0, 0], [0, 0, 0]], axes = [[1, 0, 0], [1, 0, 0]] }},
         {{ name = "hinge", kind = "pin", bodies = ["cart", "pole"], at = [[0, 0, 0], [0, 0, 0.5]],
           axes = [[0, 1, 0], [0, 1, 0]], angle = 0.5 }},
-    ]
-    run = {{ step = {step}, duration = 1 }}
-    """
-    return ls.scene("cart.toml", text)
+    """, step)
 
 
 #: Shoulder and elbow, rad and rad/s, after 1 s from rest under 2 sin 3t in the elbow, by DOP853 in joint coordinates.

@@ -85,7 +85,8 @@ impl AnyStepper {
         self.propagator.start(attitude, velocity).map(|numbers| self.state(numbers))
     }
 
-    /// A state from the numbers of an attitude and of a momentum, body frame.
+    /// A state from an attitude, the entries of the matrices of its factors row by row, body to space, and the components of a
+    /// momentum, body frame; on SO(3) kg m²/s.
     ///
     /// # Errors
     ///

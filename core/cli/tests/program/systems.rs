@@ -75,7 +75,7 @@ fn a_thousand_bodies() {
     let energies: Vec<f64> = run.samples().iter().map(|sample| sample.energy).collect();
     assert_eq!((run.steps(), run.samples()[0].bodies.len()), (5, 1000));
     assert!(run.samples().iter().all(|sample| sample.gap < 1e-12), "{}", run.samples()[5].gap);
-    // It falls from rest: the energy is lost by friction alone.
+    // A fall from rest: friction alone takes energy.
     assert!(energies.windows(2).all(|pair| pair[1] <= pair[0] + 1e-9), "{energies:?}");
     assert!((end(&run, 999) - run.samples()[0].bodies[999].position).norm() > 1e-5);
 }
@@ -246,7 +246,7 @@ fn bodies_by_their_shapes() {
         let text = free_pin("rate = 1", "").replacen("m = 2\nmoments = [0.3, 0.4, 0.5]", keys, 1);
         let run = run(&text);
         let sample = &run.samples()[0];
-        // With 1 rad/s about a pin the energy is half of the moment about it, J + 0.04 m.
+        // The energy at 1 rad/s is half of the moment about the pin, J + 0.04 m.
         (2.0 * sample.energy, sample.momentum.y / 0.2)
     };
     let is = |(found, mass): (f64, f64), m: f64, J: f64| {
