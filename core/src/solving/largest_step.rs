@@ -2,6 +2,9 @@
 
 roots!();
 
+/// Exponent of the smallest fraction that is tried, `2⁻⁹⁹⁶ ≈ 10⁻³⁰⁰`.
+const SMALLEST: i32 = 996;
+
 /// The largest fraction up to one that passes, to six digits; `None` if no fraction above 10⁻³⁰⁰ passes.
 ///
 /// The returned fraction passes. If larger fractions pass again beyond one that fails, any of these bounds may be
@@ -11,15 +14,20 @@ pub fn largest_fraction(passes: impl Fn(f64) -> bool) -> Option<f64> {
     if passes(1.0) {
         return Some(1.0);
     }
-    // Halving until a fraction passes retains the digits of a tiny one.
-    let mut low = 1.0;
-    while !passes(low) {
-        low *= 0.5;
-        if low < 1e-300 {
+    // The power of two below the bound, by doubled exponents and by bisection: a tiny fraction keeps its digits.
+    let power = |exponent: i32| 2.0_f64.powi(-exponent);
+    let (mut fails, mut exponent) = (0, 1);
+    while !passes(power(exponent)) {
+        if exponent == SMALLEST {
             return None;
         }
+        (fails, exponent) = (exponent, SMALLEST.min(2 * exponent));
     }
-    let mut high = 2.0 * low;
+    while exponent - fails > 1 {
+        let middle = i32::midpoint(fails, exponent);
+        if passes(power(middle)) { exponent = middle } else { fails = middle }
+    }
+    let (mut low, mut high) = (power(exponent), power(fails));
     while high - low > 1e-6 * high {
         let middle = 0.5 * (low + high);
         if passes(middle) { low = middle } else { high = middle }
