@@ -1,6 +1,7 @@
 //! The laws of `Advected`.
 
 use alloc::vec::Vec;
+use core::ops::{Add, Mul, Sub};
 
 use nalgebra::{SMatrix, SVector};
 
@@ -35,10 +36,9 @@ where
         let through = w.seen_through(&f.matrix(), &eliminated_inverse(&f));
         assert_same(&through, &w.seen_from(&f), allowed, "an element is a matrix, too");
         let xi: SVector<f64, D> = random.sample();
-        let entries_at = |t: f64| entries(&w.seen_from(&along::<G, N, D>(&xi, t)));
-        let rate = entries(&w.rate(&G::hat(&xi)));
-        for (place, rate) in rate.into_iter().enumerate() {
-            assert_small(rate - derivative(|t| entries_at(t)[place]), DIFFERENCE, "the rate is −ξ·w");
+        let differentiated = derivative(|t| List(entries(&w.seen_from(&along::<G, N, D>(&xi, t)))));
+        for (rate, differentiated) in entries(&w.rate(&G::hat(&xi))).into_iter().zip(differentiated.0) {
+            assert_small(rate - differentiated, DIFFERENCE, "the rate is −ξ·w");
         }
 
         // ⟨b, f⁻¹ · v⟩ = ⟨b pulled back, v⟩ for the part that is linear in v.
@@ -87,6 +87,33 @@ where
     let allowed = ROUNDING * condition(f).powi(2);
     assert_same(&parameter.seen_from(f), expected, allowed, law);
     assert_same(&parameter.advect(&f.increment()), expected, allowed, law);
+}
+
+/// The entries of a parameter as a vector.
+struct List(Vec<f64>);
+
+impl Add for List {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self(self.0.into_iter().zip(other.0).map(|(a, b)| a + b).collect())
+    }
+}
+
+impl Sub for List {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + other * -1.0
+    }
+}
+
+impl Mul<f64> for List {
+    type Output = Self;
+
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0.into_iter().map(|a| a * factor).collect())
+    }
 }
 
 /// The combination `2 w + v`.
