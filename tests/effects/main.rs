@@ -1,6 +1,5 @@
 //! Scenes: sums of Lagrangians and forces, the effects of the library, changes during a run.
 
-mod all_orders;
 mod changing_scenes;
 mod control;
 mod driven;

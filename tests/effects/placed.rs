@@ -11,7 +11,15 @@ use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
-use super::all_orders::Quartic;
+/// A kinetic term with a part of fourth order, whose Newton system has the square of the Cayley denominator.
+#[lagrangian(
+    group = SO3,
+    l_d = m * (((F - I) * (F - I).transpose()).trace() + ((F - I) * (F - I).transpose()).trace().powi(2)) / h,
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Quartic {
+    m: f64,
+}
 
 fn rigid(moments: [f64; 3]) -> RigidBody {
     RigidBody { J_d: NonstandardInertia::from_principal_moments(moments.into()).unwrap() }

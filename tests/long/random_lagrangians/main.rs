@@ -5,7 +5,7 @@
 
 mod continuous;
 mod family;
-#[path = "../../../core/late/tests/common/same.rs"]
+#[path = "../late/same.rs"]
 mod same;
 
 use checks::structure::{Group as _, System, equations, momenta, poisson, stages, symmetry, two_flows};

@@ -1,5 +1,6 @@
 //! Runs of many steps: structure over long times, random inputs, and examples as programs.
 
+mod all_orders;
 mod command_lines;
 mod continuous_bodies;
 mod damping;

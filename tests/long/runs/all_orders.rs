@@ -41,8 +41,8 @@ struct MidpointPotential {
     l_d = m * (((F - I) * (F - I).transpose()).trace() + ((F - I) * (F - I).transpose()).trace().powi(2)) / h,
 )]
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Quartic {
-    pub(super) m: f64,
+struct Quartic {
+    m: f64,
 }
 
 /// A torque `m w × ρ` and one against the velocity.

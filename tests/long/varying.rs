@@ -138,7 +138,6 @@ fn time_is_that_of_the_lengths() {
     let stepper = Stepper::new(scene, 0.01).unwrap();
     let mut state = stepper.start(attitude, velocity).unwrap();
     stepper.step_of(&mut state, 0.0037).unwrap();
-    #[cfg(feature = "serde")]
     assert_eq!(stepper.resume(&stepper.checkpoint(&state)).unwrap(), state);
     let mut times = Vec::new();
     let ended = stepper.observed(&mut state).every(1, |now| times.push(now.time())).until(0.0537).unwrap();
@@ -169,7 +168,6 @@ fn time_is_that_of_the_lengths() {
     assert!(apart(&timed.part(&state, 1.0).unwrap(), &next) < 1e-12);
     assert!(apart(&timed.part(&next, -1.0).unwrap(), &state) < 1e-12);
     assert!(matches!(timed.state_at(&state, 0.1), Err(StepError::Past { .. })));
-    #[cfg(feature = "serde")]
     assert_eq!(timed.resume(&timed.checkpoint(&state)).unwrap(), state);
     let mut frames = Frames::new(timed, start);
     for _ in 0..70 {
@@ -236,7 +234,7 @@ fn momenta_of_varied_steps_are_kept() {
     assert!(plain < 1e-12 && compensated < 1e-13);
 }
 
-/// `cargo test -p liestep --test varying -- ten_million --ignored --nocapture`.
+/// `cargo test -p liestep-long-tests --test varying -- ten_million --ignored --nocapture`.
 #[test]
 #[ignore = "a minute"]
 fn momenta_over_ten_million_steps() {
@@ -304,7 +302,7 @@ fn beletsky([e, K, begin]: [f64; 3], orbits: u32) -> [f64; 2] {
     })
 }
 
-/// The table of the guide's chapter: `cargo test -p liestep --test varying -- clock_is_worth --nocapture`.
+/// The table of the guide's chapter: `cargo test -p liestep-long-tests --test varying -- clock_is_worth --nocapture`.
 #[test]
 fn what_a_clock_is_worth() {
     let errors = |orbit: [f64; 3], orbits: u32, steps: u32| {
@@ -368,7 +366,7 @@ fn a_density_over_the_pole() {
     assert!(tenths.iter().all(|tenth| (tenth - mean).abs() < 1e-4), "{tenths:?}");
 }
 
-/// `cargo test -p liestep --test varying -- a_million --ignored --nocapture`.
+/// `cargo test -p liestep-long-tests --test varying -- a_million --ignored --nocapture`.
 #[test]
 #[ignore = "minutes"]
 fn a_density_over_the_pole_a_million_times() {
@@ -401,7 +399,6 @@ fn a_density_comes_back() {
     let start = stepper.start(SO3::identity(), Vector3::new(0.5, 0.0, 1.0)).unwrap();
     let mut state = start;
     stepper.run(&mut state, 10_000).unwrap();
-    #[cfg(feature = "serde")]
     assert_eq!(stepper.resume(&stepper.checkpoint(&state)).unwrap(), state);
     stepper.inverse().unwrap().run(&mut state, 10_000).unwrap();
     println!("back to {:.1e}, at {:.1e} s", apart(&state, &start), stepper.time(&state));

@@ -1,9 +1,6 @@
 //! Declarations read at run time make the steps of compiled ones, to the bit: all of `examples/declarations` and all
 //! effects of the library, each by the text that the macro stores.
 
-#[path = "common/same.rs"]
-mod same;
-
 use declarations::{
     Alike, CayleyTop, ContinuousTop, DoublePendulum, ElasticFlow, FallingBody, FloatingBody, FluidDrag, Flyer,
     FourthOrderTop, FreeBody, FullTop, Gyrostat, HeavyTop, LogTop, LogTraceTop, Magnet, OrbitingBody, PointSpring,
@@ -25,7 +22,7 @@ use liestep::{NonstandardInertia, SO3, Stepper};
 use liestep_late::{Array, Backend, Declaration, Interpreter, LateError, Program, Whole, numbers};
 use nalgebra::{Matrix3, Matrix5, Point, SMatrix, SVector, Vector3, Vector5};
 
-use same::{assert_as_compiled, assert_whole, list};
+use crate::same::{assert_as_compiled, assert_whole, list};
 
 /// Random parameters for which a declaration is valid.
 trait Sample {
