@@ -18,6 +18,8 @@ pub enum Role {
     Force,
     /// `#[constraint(… zero = …)]`.
     Constraint,
+    /// `#[nonholonomic(… zero = …)]`.
+    Nonholonomic,
 }
 
 impl Role {
@@ -26,7 +28,7 @@ impl Role {
         match self {
             Self::Lagrangian => "l_d",
             Self::Force => "work",
-            Self::Constraint => "zero",
+            Self::Constraint | Self::Nonholonomic => "zero",
         }
     }
 
@@ -36,6 +38,7 @@ impl Role {
             Self::Lagrangian => "a Lagrangian",
             Self::Force => "virtual work",
             Self::Constraint => "a constraint",
+            Self::Nonholonomic => "a constraint on velocities",
         }
     }
 
@@ -44,7 +47,7 @@ impl Role {
         match self {
             Self::Lagrangian => "the Lagrangian",
             Self::Force => "the virtual work",
-            Self::Constraint => "the constraint",
+            Self::Constraint | Self::Nonholonomic => "the constraint",
         }
     }
 
@@ -53,7 +56,7 @@ impl Role {
     pub fn reserved(self, is_product: bool) -> &'static [&'static str] {
         match self {
             Self::Force if !is_product => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
-            Self::Lagrangian | Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
+            Self::Lagrangian | Self::Force | Self::Nonholonomic => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
             // A constraint has no steps.
             Self::Constraint => &["I", "hat", "vee", "log", "exp", "inverse"],
         }
@@ -65,6 +68,7 @@ impl Role {
             Self::Lagrangian => "lagrangian",
             Self::Force => "force",
             Self::Constraint => "constraint",
+            Self::Nonholonomic => "nonholonomic",
         }
     }
 }
@@ -81,10 +85,10 @@ pub struct Declaration {
     /// The increments, one for each factor of the group.
     pub factors: Vec<Factor>,
     pub advected: Vec<AdvectedParameter>,
-    /// The Lagrangian, the virtual work of a force, or the constraint; `None` where a mistake elsewhere hides its
+    /// The Lagrangian, the virtual work of a force, or a constraint; `None` where a mistake elsewhere hides its
     /// meaning.
     pub expression: Option<Expr>,
-    /// The velocities and the discretisation of a continuous Lagrangian `l`.
+    /// The velocities and the discretisation of a continuous Lagrangian `l`, or of a constraint on velocities.
     pub continuous: Option<Continuous>,
     /// The index of `E_0` among the advected and given parameters, if a pace has rewritten the expression.
     pub energy: Option<usize>,

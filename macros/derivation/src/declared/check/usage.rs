@@ -19,6 +19,18 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
         check_names(declaration, used, errors);
         return;
     }
+    if declaration.role == Role::Nonholonomic {
+        if !used.iter().any(|name| matches!(name, Name::Velocity(_))) {
+            let name = declaration.velocity_or_omega(0);
+            let message = format!(
+                "the constraint depends on no velocity, which `velocity = {name}` names: it is linear in one, as \
+                 `a.dot(&{name})` is"
+            );
+            errors.push_over(declaration.expression.as_ref().map(super::value), message);
+        }
+        check_names(declaration, used, errors);
+        return;
+    }
     if declaration.continuous.is_some() {
         let unused = |(factor, _): &(usize, &Ident)| !used.contains(&Name::Velocity(*factor));
         let unused: Vec<&Ident> =
