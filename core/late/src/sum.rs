@@ -183,7 +183,7 @@ pub(crate) fn summed(terms: &[&StagedDeclaration]) -> Result<StagedDeclaration, 
     };
     let constraints = parts.iter().flat_map(|part| {
         let own = &part.staged.constraints.each;
-        own.iter().map(|constraint| constraint.map(|program| sum_of([part], |part, words| part.append(words, program))))
+        own.iter().map(move |constraint| constraint.map(|program| sum_of([part], |part, words| part.append(words, program))))
     });
     Ok(constrained(StagedDeclaration {
         name: joined(|staged| &staged.name, " + "),
