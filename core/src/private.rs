@@ -16,7 +16,8 @@ pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTenso
 pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
 pub use crate::mechanics::{
     ContinuousLagrangian, DiscreteLagrangian, Effect, Facts, Force, LeftInvariant, Legendre, Limit, Nonholonomic,
-    NonholonomicCheck, Operations, Parts, SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, StepPoint, Sum, Term, WithKinetic, WithoutKinetic,
+    NonholonomicCheck, Operations, Parts, SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, StepPoint, Sum,
+    Term, WithKinetic, WithoutKinetic,
 };
 pub use crate::methods::{Constraint, Place, Slope};
 pub use crate::numbers::{Blocks, Coordinates, Entries, InLanes, Lanes, Numbers, Real, real};

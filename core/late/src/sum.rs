@@ -1,9 +1,7 @@
 //! A sum of declarations as one declaration, whose programs add the outputs of the terms' programs.
 
 use liestep_derivation::whole::{Value, Words, constrained};
-use liestep_derivation::{
-    Array, Carried, Constraints, Parameter, Program, Role, Source, StagedDeclaration, Stages,
-};
+use liestep_derivation::{Array, Carried, Constraints, Parameter, Program, Role, Source, StagedDeclaration, Stages};
 
 use crate::error::LateError;
 
@@ -183,7 +181,8 @@ pub(crate) fn summed(terms: &[&StagedDeclaration]) -> Result<StagedDeclaration, 
     };
     let constraints = parts.iter().flat_map(|part| {
         let own = &part.staged.constraints.each;
-        own.iter().map(move |constraint| constraint.map(|program| sum_of([part], |part, words| part.append(words, program))))
+        own.iter()
+            .map(move |constraint| constraint.map(|program| sum_of([part], |part, words| part.append(words, program))))
     });
     Ok(constrained(StagedDeclaration {
         name: joined(|staged| &staged.name, " + "),

@@ -6,7 +6,8 @@ use liestep_late::{Declaration, LateError, Whole, WholeError};
 
 const BODY: &str = "#[lagrangian(group = SO3, velocity = Omega, l = 0.5 * Omega.dot(&(J * Omega)), \
                     discretise = trapezoid(Cayley))] struct Body { J: Inertia }";
-const SUSLOV: &str = "#[nonholonomic(group = SO3, velocity = Omega, zero = a.dot(&Omega))] struct Suslov { a: Vector3<f64> }";
+const SUSLOV: &str =
+    "#[nonholonomic(group = SO3, velocity = Omega, zero = a.dot(&Omega))] struct Suslov { a: Vector3<f64> }";
 
 const J: [f64; 9] = [2.0, 0.0, 0.0, 0.0, 1.5, 0.4, 0.0, 0.4, 1.0];
 const IDENTITY: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
@@ -89,6 +90,11 @@ fn impossible_constraints_are_refused() {
     let all = stepper(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], 0.1, "step").unwrap_err();
     let message = "3 constraints on velocities leave no motion on a group of dimension 3: leave some out";
     assert_eq!(all.to_string(), message);
-    let alone = Whole::<liestep_late::Interpreter>::of(Declaration::parse(SUSLOV).unwrap(), &[0.0, 0.0, 1.0], 0.1, Method::default());
+    let alone = Whole::<liestep_late::Interpreter>::of(
+        Declaration::parse(SUSLOV).unwrap(),
+        &[0.0, 0.0, 1.0],
+        0.1,
+        Method::default(),
+    );
     assert!(matches!(alone, Err(WholeError::Declaration(LateError::Step(_)))), "{alone:?}");
 }

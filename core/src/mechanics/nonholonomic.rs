@@ -74,11 +74,7 @@ impl NonholonomicCheck {
 }
 
 /// Checks that a velocity satisfies the constraints of a scene, and that none repeats others.
-pub(crate) fn check_constraints<E: Effect>(
-    scene: &E,
-    velocity: &Vector<E>,
-    w: &E::Advected,
-) -> Result<(), SetupError> {
+pub(crate) fn check_constraints<E: Effect>(scene: &E, velocity: &Vector<E>, w: &E::Advected) -> Result<(), SetupError> {
     for (constraint, normal) in normals(scene, w).iter().enumerate() {
         let Normal { own, square, .. } = normal;
         let (size, across) = (reported(own.dot(own)), reported(*square));

@@ -5,10 +5,10 @@
 
 use core::marker::PhantomData;
 
+use super::constrained::{bordered, with_constraints};
 use super::iteration::{
     Iteration, LONGEST_DAMPED, Lanes, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, Root, System, is_positive,
 };
-use super::constrained::{bordered, with_constraints};
 use super::problem::{Problem, newton_system, step_terms};
 use crate::error::StepError;
 use crate::groups::{LieGroup, Retraction, SquareOf};

@@ -56,7 +56,9 @@ impl Role {
     pub fn reserved(self, is_product: bool) -> &'static [&'static str] {
         match self {
             Self::Force if !is_product => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
-            Self::Lagrangian | Self::Force | Self::Nonholonomic => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
+            Self::Lagrangian | Self::Force | Self::Nonholonomic => {
+                &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"]
+            }
             // A constraint has no steps.
             Self::Constraint => &["I", "hat", "vee", "log", "exp", "inverse"],
         }

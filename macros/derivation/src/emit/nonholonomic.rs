@@ -26,9 +26,8 @@ pub(super) fn implementation(
     let (span, d, header) = (Span::mixed_site(), emitter.derived, emitter.header);
     let (declaration, private) = (emitter.declaration, &header.private);
     let (matrix, vector, square, scalar) = (header.matrix(), header.vector(), header.square(), &header.scalar);
-    let term = |name, form, expression| {
-        emitter.method(name, form, &emitter.kernel.beginning.term(d, form, expression), &[])
-    };
+    let term =
+        |name, form, expression| emitter.method(name, form, &emitter.kernel.beginning.term(d, form, expression), &[]);
     let declared = verbatim::declared(declaration, header);
     let at_increment = term("at_increment", Form::Scalar, &emitter.lowered.declared.expression);
     let slope = term("slope", Form::Vector, &d.right_momentum);
@@ -131,7 +130,10 @@ fn text_of(
     let sections = [
         ("at_increment", format!("h c(F, w) = {}    [zero in each step]", text(&lowered.declared.expression, symbols))),
         ("slope", format!("∂(h c) along exp(tE_k)F = {}", covector(&derived.right_momentum))),
-        ("reaction", format!("A{w} = {}    [U(F) = μ + k₀ + λ A{w}; A{w}·ξ = 0 at each time]", covector(&derived.limit.bias))),
+        (
+            "reaction",
+            format!("A{w} = {}    [U(F) = μ + k₀ + λ A{w}; A{w}·ξ = 0 at each time]", covector(&derived.limit.bias)),
+        ),
         ("not conserved", NOT_KEPT.to_owned()),
         ("certainty", docs::certified(docs::OF_A_STEP, findings.sureness)),
     ];

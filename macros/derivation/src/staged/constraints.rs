@@ -16,11 +16,7 @@ pub struct Constraint<P = Program> {
 impl<P> Constraint<P> {
     /// Maps all programs.
     pub fn map<Q>(&self, mut make: impl FnMut(&P) -> Q) -> Constraint<Q> {
-        Constraint {
-            at_increment: make(&self.at_increment),
-            slope: make(&self.slope),
-            reaction: make(&self.reaction),
-        }
+        Constraint { at_increment: make(&self.at_increment), slope: make(&self.slope), reaction: make(&self.reaction) }
     }
 }
 

@@ -15,10 +15,10 @@ use proc_macro2::TokenStream;
 use crate::declared::errors::{Errors, Mistake};
 use crate::declared::{Declaration, Role, parse};
 use crate::expand::{self, Judgement};
-pub(crate) use constraints::Constants;
-pub use constraints::{Constraint, Constraints};
 pub use crate::mathematics::symbolic::Function;
 use crate::mathematics::symbolic::work;
+pub(crate) use constraints::Constants;
+pub use constraints::{Constraint, Constraints};
 
 /// Straight-line code on numbers. Registers hold the inputs, then the literals, then the result of each operation.
 #[derive(Clone, Debug, PartialEq)]

@@ -162,12 +162,7 @@ impl Writer<'_> {
     }
 
     /// The right-trivialised Jacobian with the constraints, by which a solution is judged.
-    pub(super) fn branch_with_constraints(
-        &self,
-        words: &mut Words,
-        d: &[Matrix],
-        jacobian: Matrix,
-    ) -> Matrix {
+    pub(super) fn branch_with_constraints(&self, words: &mut Words, d: &[Matrix], jacobian: Matrix) -> Matrix {
         let scale = Value::Input(Source::new(Array::Constants, self.staged.constraints.scale));
         let normals = self.normals(words, &|at| Value::Input(Source::new(Array::Advected, at)));
         let (mut rows, mut slopes) = (jacobian.clone(), Vec::new());

@@ -125,12 +125,7 @@ impl<'a> Writer<'a> {
     }
 
     /// The system of the momentum equation without reactions.
-    fn free_system(
-        &self,
-        words: &mut Words,
-        half: &[Value],
-        other: &dyn Fn(Source) -> Value,
-    ) -> (Vec<Value>, Matrix) {
+    fn free_system(&self, words: &mut Words, half: &[Value], other: &dyn Fn(Source) -> Value) -> (Vec<Value>, Matrix) {
         let n = self.dimension();
         let mut residual = self.with_increments_of(words, &self.staged.programs.newton_system, half, other);
         let jacobian = Matrix { rows: n, columns: n, entries: residual.split_off(n) };

@@ -71,7 +71,9 @@ fn skip_argument(input: ParseStream) {
 fn known(role: Role) -> Vec<&'static str> {
     let mut known = match role {
         Role::Constraint => vec!["group", "advected", role.key(), "crate"],
-        Role::Nonholonomic => vec!["group", "advected", "given", role.key(), "velocity", "discretise", "generators", "crate"],
+        Role::Nonholonomic => {
+            vec!["group", "advected", "given", role.key(), "velocity", "discretise", "generators", "crate"]
+        }
         _ => vec!["group", "advected", "given", role.key(), "generators", "gradients", "crate"],
     };
     match role {

@@ -52,7 +52,10 @@ pub fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Ro
     };
     let found = item.attrs.iter().enumerate().find_map(|(at, attribute)| Some((at, role(attribute)?)));
     let Some((at, role)) = found else {
-        errors.push(item.ident.span(), "a declaration is a struct with `#[lagrangian(…)]`, `#[force(…)]` or `#[nonholonomic(…)]`");
+        errors.push(
+            item.ident.span(),
+            "a declaration is a struct with `#[lagrangian(…)]`, `#[force(…)]` or `#[nonholonomic(…)]`",
+        );
         return None;
     };
     let attribute = item.attrs.remove(at);
@@ -90,10 +93,9 @@ pub fn declared_again(item: &ItemStruct) -> Option<&Path> {
     item.attrs.iter().map(syn::Attribute::path).find(|path| {
         let is_ours = path.segments.len() == 1 || path.segments.first().is_some_and(|first| first.ident == "liestep");
         is_ours
-            && path
-                .segments
-                .last()
-                .is_some_and(|last| ["lagrangian", "force", "constraint", "nonholonomic"].iter().any(|name| last.ident == name))
+            && path.segments.last().is_some_and(|last| {
+                ["lagrangian", "force", "constraint", "nonholonomic"].iter().any(|name| last.ident == name)
+            })
     })
 }
 

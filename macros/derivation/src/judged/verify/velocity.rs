@@ -31,7 +31,8 @@ pub fn not_linear(declaration: &Declaration, tree: &Rc<Tree>) -> Option<Rc<Tree>
     };
     let mut found = Some(tree.clone()).filter(|tree| !is_linear(tree))?;
     // Terms that cancel in a sum are no mistake, unless one is.
-    while let Some(part) = split_within(&found, DEEPEST).and_then(|parts| parts.into_iter().find(|one| !is_linear(one))) {
+    while let Some(part) = split_within(&found, DEEPEST).and_then(|parts| parts.into_iter().find(|one| !is_linear(one)))
+    {
         found = part;
     }
     Some(found)
