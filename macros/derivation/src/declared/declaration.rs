@@ -235,6 +235,11 @@ impl Declaration {
         self.velocity(factor).map_or_else(|| "Omega".to_owned(), ToString::to_string)
     }
 
+    /// An example of a product with the velocity, `a.dot(&Omega)`; texts need no `&`.
+    pub fn product_with_velocity(&self) -> String {
+        format!("`a.dot({}{})`", if self.is_text { "" } else { "&" }, self.velocity_or_omega(0))
+    }
+
     /// The name of the velocity of a factor in formulas.
     pub fn name_of_velocity(&self, factor: usize) -> String {
         match self.velocities().get(factor) {

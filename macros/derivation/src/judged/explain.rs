@@ -24,10 +24,10 @@ pub fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) ->
 /// Reports the part of a constraint that isn't linear in the velocities; `None` if there is one.
 pub fn linear(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
     let Some(part) = verify::not_linear(declaration, tree) else { return Some(()) };
-    let name = declaration.velocity_or_omega(0);
+    let example = declaration.product_with_velocity();
     let message = format!(
-        "a constraint on velocities is linear in them, as `a.dot(&{name})` is: leave out what has no velocity, and powers \
-         and functions of it"
+        "a constraint on velocities is linear in them, as {example} is: leave out what has no velocity, and powers and \
+         functions of one"
     );
     errors.push_between([part.span, part.end], message);
     None

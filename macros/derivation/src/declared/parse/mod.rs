@@ -238,7 +238,7 @@ fn kind(
 ) -> (Option<Expr>, Option<Continuous>) {
     let (velocity, discretisation) = (arguments.velocity.take(), arguments.discretisation.take());
     let Some((key, l)) = arguments.continuous.take() else {
-        if let Some((key, names)) = velocity {
+        if let Some((key, names)) = velocity.filter(|_| role == Role::Lagrangian) {
             let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
             let message = format!(
                 "`velocity` belongs to a continuous Lagrangian `l = …`; in `l_d` the velocity of a step is in `F`: remove \
