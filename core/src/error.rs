@@ -128,6 +128,34 @@ pub enum SetupError {
         /// Pivot of the joint, relative to its value between free bodies.
         pivot: f64,
     },
+    /// The initial velocity violates a constraint on velocities.
+    #[error(
+        "the initial velocity violates the constraint {constraint} (from zero) on velocities, by {by:e} of its size; give one that satisfies it"
+    )]
+    ViolatedConstraint {
+        /// The constraint, from zero.
+        constraint: usize,
+        /// The cosine of the angle between the constraint's covector and the velocity, in components.
+        by: f64,
+    },
+    /// A constraint on velocities demands nothing that those before it don't, at least where the motion starts.
+    #[error(
+        "the constraint {constraint} (from zero) on velocities demands nothing that those before it don't, at least where the motion starts; leave it out, or start elsewhere"
+    )]
+    RedundantConstraint {
+        /// The constraint, from zero.
+        constraint: usize,
+    },
+    /// As many constraints on velocities as the group has dimensions, or more, leave no motion.
+    #[error(
+        "{constraints} constraints on velocities leave no motion on a group of dimension {dimension}; leave some out"
+    )]
+    NoMotion {
+        /// The number of constraints.
+        constraints: usize,
+        /// The dimension of the group.
+        dimension: usize,
+    },
     /// The step is NaN or infinite, or so small or large that the constants of the step leave the scalar's range.
     #[error("the step {step:e} s can't be used; choose a finite one of the order of the motion's time scale")]
     InvalidStep {

@@ -8,5 +8,5 @@ pub use crate::groups::{LieGroup as _, R1, R2, R3, SE2, SE3, SO2, SO3};
 pub use crate::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
 pub use crate::mechanics::{DiscreteLagrangian as _, Effect as _, Term as _};
 pub use crate::motion::{Integrator as _, State, StateOf, Stepper};
-pub use liestep_macros::{force, lagrangian};
+pub use liestep_macros::{force, lagrangian, nonholonomic};
 pub use nalgebra::{Matrix3, UnitQuaternion, Vector3};

@@ -4,7 +4,7 @@ pub use core;
 pub use nalgebra;
 
 // Declaration macros, which the macro of a user's group calls back.
-pub use liestep_macros::{constraint, force, lagrangian, matrix_group};
+pub use liestep_macros::{constraint, force, lagrangian, matrix_group, nonholonomic};
 
 // Names in an expanded declaration.
 pub use crate::error::SetupError;
@@ -15,11 +15,12 @@ pub use crate::groups::{CayleyRetraction, Configuration, Relative, Retraction, S
 pub use crate::groups::{ContravariantTensor, ContravariantVector, CovariantTensor, Given, MixedTensor};
 pub use crate::groups::{Generators, LieGroup, MatrixGroup, SO3};
 pub use crate::mechanics::{
-    ContinuousLagrangian, DiscreteLagrangian, Effect, Facts, Force, LeftInvariant, Legendre, Limit, Operations, Parts,
-    SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, StepPoint, Sum, Term, WithKinetic, WithoutKinetic,
+    ContinuousLagrangian, DiscreteLagrangian, Effect, Facts, Force, LeftInvariant, Legendre, Limit, Nonholonomic,
+    NonholonomicCheck, Operations, Parts, SceneVisitor, SecondDerivatives, SharedBy, StepDerivatives, StepPoint, Sum,
+    Term, WithKinetic, WithoutKinetic,
 };
 pub use crate::methods::{Constraint, Place, Slope};
-pub use crate::numbers::{Blocks, Entries, InLanes, Lanes, Numbers, Real, real};
+pub use crate::numbers::{Blocks, Coordinates, Entries, InLanes, Lanes, Numbers, Real, real};
 
 // Decisions of a solve, for steps that are programs.
 pub use crate::solving::{
@@ -45,7 +46,6 @@ use nalgebra::{Matrix3, Point, SMatrix, SVector};
 
 use crate::groups::{Advected, homogeneous};
 use crate::mechanics::{DiagonalNonstandardInertia, Inertia, NonstandardInertia};
-use crate::numbers::Coordinates;
 
 /// The inverse `F⁻¹` of a group element.
 #[inline]

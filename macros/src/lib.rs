@@ -159,6 +159,35 @@ pub fn force(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) 
     derivation::expand(Role::Force, arguments.into(), &item.into()).into()
 }
 
+/// Derives a constraint that is linear in the velocity, such as rolling without sliding: `impl Nonholonomic`, `impl Effect`
+/// and `impl Add` for the annotated struct.
+///
+/// ```text
+/// #[nonholonomic(
+///     group = SO3,                    as for a Lagrangian; also `group(F = SO3, d = R3)`
+///     advected(w = up, …),            as for a Lagrangian
+///     given(u = drift, …),            as for a Lagrangian
+///     velocity = Omega, zero = …,     linear in the velocity, a scalar; on a product `velocity(Omega, v)`
+///     discretise = trapezoid(Cayley), the rule by which an increment satisfies it, as for a Lagrangian: this one if none is
+///                                     named
+///     crate = path,                   the path of liestep, if not `::liestep`
+/// )]
+/// struct Name { … }                   the parameters
+/// ```
+///
+/// The struct adds to Lagrangians and forces of the same group. A step of the sum is that of the discrete
+/// Lagrange–d'Alembert principle, of order two: the reactions do no work on displacements that satisfy the constraints, and
+/// each increment satisfies them to rounding, as does the velocity after each step. What a constraint has is scalar: several
+/// are several structs that are added, and each has a multiplier.
+///
+/// The scene is no Lagrangian any more. A step isn't symplectic, and methods that need a Lagrangian are refused. The initial
+/// velocity has to satisfy the constraints. `Nonholonomic` has the derived terms, and the chapter "Rolling" of the guide
+/// examples with their closed solutions.
+#[proc_macro_attribute]
+pub fn nonholonomic(arguments: proc_macro::TokenStream, item: proc_macro::TokenStream) -> proc_macro::TokenStream {
+    derivation::expand(Role::Nonholonomic, arguments.into(), &item.into()).into()
+}
+
 /// Derives the slopes of a holonomic constraint on two bodies: `impl Constraint` for the annotated struct, which
 /// `Multibody::join` takes like the library's joints.
 ///

@@ -6,6 +6,7 @@ mod driven;
 mod forces;
 mod kinetic_terms;
 mod library;
+mod nonholonomic;
 mod placed;
 mod sums;
 

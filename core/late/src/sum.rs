@@ -1,7 +1,7 @@
 //! A sum of declarations as one declaration, whose programs add the outputs of the terms' programs.
 
-use liestep_derivation::whole::{Value, Words};
-use liestep_derivation::{Array, Carried, Parameter, Program, Role, Source, StagedDeclaration, Stages};
+use liestep_derivation::whole::{Value, Words, constrained};
+use liestep_derivation::{Array, Carried, Constraints, Parameter, Program, Role, Source, StagedDeclaration, Stages};
 
 use crate::error::LateError;
 
@@ -179,7 +179,12 @@ pub(crate) fn summed(terms: &[&StagedDeclaration]) -> Result<StagedDeclaration, 
     let joined = |of: fn(&StagedDeclaration) -> &str, by: &str| {
         terms.iter().map(|staged| of(staged)).collect::<Vec<_>>().join(by)
     };
-    Ok(StagedDeclaration {
+    let constraints = parts.iter().flat_map(|part| {
+        let own = &part.staged.constraints.each;
+        own.iter()
+            .map(move |constraint| constraint.map(|program| sum_of([part], |part, words| part.append(words, program))))
+    });
+    Ok(constrained(StagedDeclaration {
         name: joined(|staged| &staged.name, " + "),
         role: terms.iter().map(|staged| staged.role).find(|&role| role == Role::Lagrangian).unwrap_or(first.role),
         factors: first.factors.clone(),
@@ -194,8 +199,9 @@ pub(crate) fn summed(terms: &[&StagedDeclaration]) -> Result<StagedDeclaration, 
         in_increment: first.in_increment,
         energy: None,
         blocks: solved().next().map_or_else(Vec::new, |one| one.blocks.iter().copied().filter(in_all).collect()),
+        constraints: Constraints { each: constraints.collect(), ..Constraints::default() },
         programs: programs(&parts),
         parameters,
         carried,
-    })
+    }))
 }

@@ -72,9 +72,10 @@ impl Derivation {
         self.0.factors.iter().map(|factor| factor.generators.len()).sum()
     }
 
+    /// The kind of the declaration, by its attribute.
     #[getter]
-    fn is_force(&self) -> bool {
-        self.0.role == Role::Force
+    fn role(&self) -> &'static str {
+        self.0.role.attribute()
     }
 
     #[getter]

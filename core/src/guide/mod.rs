@@ -15,5 +15,5 @@ macro_rules! chapters {
 }
 
 chapters! {
-    accuracy bodies "hanging-chain" conserved "3-8" control effects "satellite" ensembles files first_program "moving-top" gradients groups hard_cases inside late recording satellite thesis varying
+    accuracy bodies "hanging-chain" conserved "3-8" control effects "satellite" ensembles files first_program "moving-top" gradients groups hard_cases inside late recording rolling satellite thesis varying
 }

@@ -111,7 +111,8 @@ impl<E: Effect + ?Sized> Limit<E> {
 ///
 /// All parts are additive, so effects on one group add: see [`Sum`](crate::mechanics::Sum). An effect that isn't the
 /// gradient of a Lagrangian fits as well: a discrete force `(f⁻, f⁺)` of the Lagrange–d'Alembert principle has the
-/// unknown part `−f⁻(F, w)` and the kick after the step `Ad*_F f⁻ + f⁺`.
+/// unknown part `−f⁻(F, w)` and the kick after the step `Ad*_F f⁻ + f⁺`. Reactions of constraints on velocities are added to
+/// `a`, as large as the constraints ask for.
 ///
 /// # Source
 ///
@@ -251,6 +252,20 @@ pub trait Effect: Term {
     fn newton_residual(constants: &Self::Constants, terms: &Self::StepTerms, half: &Vector<Self>) -> Vector<Self> {
         Self::newton_system(constants, terms, half).0
     }
+
+    /// Visits the [constraints on velocities](crate::mechanics::Nonholonomic) at an increment: each with its value and its
+    /// slope.
+    fn constrained(
+        &self,
+        _: &Matrix<Self>,
+        _: &Self::Advected,
+        _h: Self::Scalar,
+        _each: &mut dyn FnMut(Self::Scalar, Vector<Self>),
+    ) {
+    }
+
+    /// Visits the covectors of the reactions of the [constraints on velocities](crate::mechanics::Nonholonomic).
+    fn reactions(&self, _: &Self::Advected, _each: &mut dyn FnMut(Vector<Self>)) {}
 
     /// `Ad*_F` of the part of the diamond that depends on `F`, as a function of the new `w⁺`; `increment` is `F − I`.
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self>;

@@ -59,6 +59,9 @@ pub struct Facts {
     /// bodies; the whole Jacobian is then that of [`newton_linked`](crate::mechanics::Effect::newton_linked).
     pub links_neighbours: bool,
 
+    /// The number of constraints on velocities; see [`Nonholonomic`](crate::mechanics::Nonholonomic).
+    pub constraints: usize,
+
     /// The number of operations of the effect in a step, as the macro counts them.
     pub operations: Operations,
 }
@@ -72,7 +75,17 @@ impl Facts {
         is_quadratic: false,
         apart: Blocks::WHOLE,
         links_neighbours: false,
+        constraints: 0,
         operations: Operations::UNCOUNTED,
+    };
+
+    /// The facts about a constraint on velocities, which is no part of the momentum equation.
+    pub const OF_A_CONSTRAINT: Self = Self {
+        parts: Parts { unknown: false, kick_before: false, kick_after: false },
+        has_constant_inertia: true,
+        is_quadratic: true,
+        constraints: 1,
+        ..Self::ANY
     };
 
     /// The facts about the sum of two effects. Its Newton system is that of the terms with an unknown part.
@@ -92,6 +105,7 @@ impl Facts {
             is_quadratic: self.is_quadratic && other.is_quadratic,
             apart,
             links_neighbours: self.links_neighbours || other.links_neighbours,
+            constraints: self.constraints + other.constraints,
             operations: Operations { step: one.step.saturating_add(two.step), iteration },
         }
     }

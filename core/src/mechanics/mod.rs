@@ -1,7 +1,7 @@
 //! Mechanics: the terms of a scene, declared by the macro or written by hand.
 //!
 //! An [`Effect`] is one term with everything that a step needs; a [`DiscreteLagrangian`] is an effect with `l_d(F, w)`
-//! itself, a [`Force`] one with virtual work. A [`Sum`] of two effects is an effect, and so is a [`Placement`] of terms
+//! itself, a [`Force`] one with virtual work, a [`Nonholonomic`] one a constraint on velocities. A [`Sum`] of two effects is an effect, and so is a [`Placement`] of terms
 //! on bodies of a system. A [`ContinuousLagrangian`] is `l(ξ, w)` with the continuous equations. No equation is solved
 //! here except that of the inverse Legendre transform.
 
@@ -16,6 +16,7 @@ mod inertia;
 mod kinetic_part;
 mod lagrangian;
 mod noether;
+mod nonholonomic;
 mod operations;
 mod second_derivatives;
 mod sum;
@@ -37,6 +38,8 @@ pub use kinetic_part::KineticPart;
 pub use kinetic_part::{WithKinetic, WithoutKinetic};
 pub use lagrangian::{DiscreteLagrangian, RigidScene, Scene};
 pub(crate) use noether::{left_symmetries, right_symmetries};
+pub use nonholonomic::{Nonholonomic, NonholonomicCheck};
+pub(crate) use nonholonomic::{check_constraints, normals};
 pub use operations::Operations;
 pub(crate) use second_derivatives::PointOf;
 pub use second_derivatives::{SecondDerivatives, StepDerivatives, StepPoint};

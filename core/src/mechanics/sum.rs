@@ -244,6 +244,22 @@ where
         )
     }
 
+    fn constrained(
+        &self,
+        f: &Matrix<Self>,
+        w: &Self::Advected,
+        h: Self::Scalar,
+        each: &mut dyn FnMut(Self::Scalar, Vector<Self>),
+    ) {
+        self.first.constrained(f, &w.0, h, each);
+        self.second.constrained(f, &w.1, h, each);
+    }
+
+    fn reactions(&self, w: &Self::Advected, each: &mut dyn FnMut(Vector<Self>)) {
+        self.first.reactions(&w.0, each);
+        self.second.reactions(&w.1, each);
+    }
+
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {
         of_those_with!(
             kick_after: A::kick_after(&constants.0, increment, &next.0) + B::kick_after(&constants.1, increment, &next.1),

@@ -5,6 +5,7 @@
 
 use core::marker::PhantomData;
 
+use super::constrained::{bordered, with_constraints};
 use super::iteration::{
     Iteration, LONGEST_DAMPED, Lanes, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, Root, System, is_positive,
 };
@@ -68,23 +69,27 @@ impl<L: Effect> System<Group<L>> for CalledEquation<'_, L> {
         if const { L::FACTS.links_neighbours } {
             return update_of::<L>(self.problem.constants, &self.terms, half);
         }
-        let (residual, jacobian) = self.newton_system(half);
+        let (residual, jacobian) = Equation::newton_system(self, half);
         NewtonUpdate::of(&residual, &jacobian, self.pattern())
     }
 
     fn residual(&self, half: &Vector<L>) -> Vector<L> {
+        if const { L::FACTS.constraints > 0 } {
+            return Equation::newton_system(self, half).0;
+        }
         L::newton_residual(self.problem.constants, &self.terms, half)
     }
 }
 
 impl<L: Effect> Equation<Group<L>> for CalledEquation<'_, L> {
     fn newton_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
-        newton_system::<L>(self.problem.constants, &self.terms, half)
+        with_constraints(self.problem, half, newton_system::<L>(self.problem.constants, &self.terms, half))
     }
 
     fn unforced_system(&self, half: &Vector<L>) -> (Vector<L>, Square<L>) {
         let Problem { constants, w, .. } = *self.problem;
-        newton_system::<L>(constants, &step_terms::<L>(constants, &Vector::<L>::zero(), w), half)
+        let unforced = newton_system::<L>(constants, &step_terms::<L>(constants, &Vector::<L>::zero(), w), half);
+        with_constraints(self.problem, half, unforced)
     }
 
     fn momentum_jacobian(&self, half: &Vector<L>) -> Option<Square<L>> {
@@ -93,7 +98,7 @@ impl<L: Effect> Equation<Group<L>> for CalledEquation<'_, L> {
         }
         let Problem { scene, w, h, .. } = *self.problem;
         let f = L::Retraction::retract(&(*half + *half)).matrix();
-        Some(scene.momentum_jacobian(&f, w, h) * h)
+        Some(bordered(self.problem, &f, scene.momentum_jacobian(&f, w, h) * h))
     }
 }
 

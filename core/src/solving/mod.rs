@@ -5,6 +5,7 @@
 //! of `F = I`. This room has neither states nor time.
 
 mod careful;
+mod constrained;
 mod guess;
 mod iteration;
 mod lanes;
@@ -17,7 +18,7 @@ pub use guess::{Guess, WarmStart};
 pub(crate) use iteration::Root;
 pub use iteration::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, SETTLED};
 pub use largest_step::{largest_fraction, six_digits};
-pub(crate) use problem::{Problem, newton_system, step_terms};
+pub(crate) use problem::{Problem, newton_residual, newton_system, step_terms};
 pub(crate) use reused_jacobian::Curvature;
 pub use reused_jacobian::{NEAR_ENOUGH, SUFFICIENT, has_sufficed, may_suffice, safe};
 pub use solvability::{Solvability, TurningLimits, turning_limits};

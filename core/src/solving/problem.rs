@@ -106,6 +106,16 @@ pub(crate) fn newton_system<L: Effect>(
     L::newton_system(constants, terms, half)
 }
 
+/// [`Effect::newton_residual`] for rare calls, as [`newton_system`].
+#[inline(never)]
+pub(crate) fn newton_residual<L: Effect>(
+    constants: &L::Constants,
+    terms: &L::StepTerms,
+    half: &Vector<L>,
+) -> Vector<L> {
+    L::newton_residual(constants, terms, half)
+}
+
 /// [`Effect::step_terms`] for rare calls, as [`newton_system`].
 #[inline(never)]
 pub(crate) fn step_terms<L: Effect>(constants: &L::Constants, a: &Vector<L>, w: &L::Advected) -> L::StepTerms {

@@ -38,7 +38,7 @@ pub(crate) enum Judgement {
     Steps(Box<Steps>),
 }
 
-/// The results for a declaration with steps: a discrete Lagrangian, or a force.
+/// The results for a declaration with steps: a discrete Lagrangian, a force, or a constraint on velocities.
 pub(crate) struct Steps {
     pub(crate) chosen: Choice,
     /// The continuous equations of a Lagrangian.
@@ -67,6 +67,10 @@ pub(crate) fn judged(declaration: &Declaration, errors: &mut Errors) -> Option<J
     let tree = check::check(declaration, errors)?;
     let declared = match declaration.continuous {
         Some(_) if judged::terms(declaration, &tree, errors).is_none() => return None,
+        Some(_) if declaration.role == Role::Nonholonomic => {
+            judged::linear(declaration, &tree, errors)?;
+            Some(judged::of_declared(declaration, &tree, errors)?)
+        }
         Some(_) => Some(judged::of_declared(declaration, &tree, errors)?),
         None => None,
     };

@@ -31,6 +31,6 @@ pub use declared::errors::{Mistake, suggestion};
 pub use emit::{hot, lanes};
 pub use expand::{expand, matrix_group};
 pub use staged::{
-    Action, Array, Carried, Factor, Function, MOST_WORK, Operation, Parameter, ParameterKind, Program, Refusal, Source,
-    StagedDeclaration, Stages, staged,
+    Action, Array, Carried, Constraint, Constraints, Factor, Function, MOST_WORK, Operation, Parameter, ParameterKind,
+    Program, Refusal, Source, StagedDeclaration, Stages, staged,
 };

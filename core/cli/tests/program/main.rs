@@ -10,6 +10,7 @@ mod joints;
 mod judged;
 mod lagrangian;
 mod mutated;
+mod nonholonomic;
 mod orbits;
 mod page;
 mod papers;

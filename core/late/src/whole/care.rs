@@ -137,7 +137,7 @@ impl<B: Backend<f64>> Problem<'_, B> {
             (Array::Parameters, self.numbers),
             (Array::Advected, self.advected),
         ];
-        B::run(&program.code, &[], given, &mut numbers);
+        B::run(&program.code, self.constants, given, &mut numbers);
         let (near, jacobian) = numbers.split_at(sizes.near);
         let (determinants, traces) = jacobian.split_at(2 * sizes.dets);
         let is_near = near.iter().all(|near| near * 4.0 < 1.0);

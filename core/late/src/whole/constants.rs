@@ -62,7 +62,9 @@ impl StepConstants {
         // A step of zero is left to the solve with care, as there is no equation.
         let largest = trace / h * (2.0 * RATIO) / f64::EPSILON;
         let largest_target = if h == 0.0 { 0.0 } else { largest * largest };
-        Ok(Self { h, numbers: constants, safe: safe(determinant), largest_target })
+        // The determinants of an inertia bound no Jacobian with constraints.
+        let safe = if codes.code.reactions.is_some() { f64::INFINITY } else { safe(determinant) };
+        Ok(Self { h, numbers: constants, safe, largest_target })
     }
 
     /// The determinant above which a Jacobian may be used again, at these advected parameters.

@@ -74,7 +74,9 @@ impl<B: Backend<f64>> Step<'_, B> {
 
     /// The proved bounds at this step and at half of it, as they hold for one dependence of the kinetic part on `h` only.
     fn limits(&self) -> Option<TurningLimits> {
-        if !matches!(&self.codes.factors[..], [factor] if factor.form == Form::Rotation) {
+        // A reaction can be as large as it needs be.
+        let is_constrained = self.codes.code.reactions.is_some();
+        if is_constrained || !matches!(&self.codes.factors[..], [factor] if factor.form == Form::Rotation) {
             return None;
         }
         let limit = Limit { codes: self.codes, numbers: self.numbers, advected: self.advected };

@@ -1,5 +1,6 @@
 //! The continuous limit of a declaration at an attitude: momenta and their velocities, the inertia, the energy.
 
+use liestep::__private::NonholonomicCheck;
 use liestep::__private::velocity::{AT_MOST, MOST_HALVINGS, MOST_ITERATIONS, ROUNDINGS, ROUNDINGS_OF_SOLUTION};
 use liestep::SetupError;
 use liestep_derivation::Array;
@@ -140,6 +141,27 @@ impl<B: Backend<f64>> Limit<'_, B> {
             return Ok(());
         }
         Err(SetupError::AmbiguousVelocity { difference: (missed / size).sqrt() })
+    }
+
+    /// Checks that the velocity of a momentum satisfies the constraints on velocities, and that none repeats others.
+    pub(super) fn check_constraints(&self, momentum: &[f64], constants: &[f64]) -> Result<(), SetupError> {
+        let Some(reactions) = &self.codes.code.reactions else { return Ok(()) };
+        let velocity = self.velocity(momentum);
+        let found = rare::<B>(reactions, constants, [(Array::Advected, self.advected), (Array::Half, &[])]);
+        let n = velocity.len();
+        let (covectors, squares) = found.split_at(found.len() / (n + 1) * n);
+        for (constraint, (covector, &square)) in covectors.chunks(n).zip(squares).enumerate() {
+            NonholonomicCheck {
+                constraint,
+                size: dot(covector, covector),
+                across: square,
+                rate: dot(covector, &velocity),
+                speed: dot(&velocity, &velocity),
+                epsilon: f64::EPSILON,
+            }
+            .passed()?;
+        }
+        Ok(())
     }
 
     /// Checks that a momentum is that of a velocity.

@@ -55,7 +55,8 @@ const fn refused<T>(cause: &'static str) -> Result<T, WholeError> {
 ///
 /// # Errors
 ///
-/// The declaration has no kinetic part or is too large; [`SetupError::Method`] if its group or a force rule the method out;
+/// The declaration has no kinetic part or is too large; [`SetupError::Method`] if its group, a force or a constraint on
+/// velocities rule the method out;
 /// the errors of [`Stepper::new`](liestep::Stepper::new) and of the library's other constructors.
 pub fn stepper<B: Backend<f64>>(
     declaration: &'static Declaration,
@@ -80,6 +81,11 @@ pub fn stepper<B: Backend<f64>>(
         }
         (_, None) if has_own_steps && !method.compensated => {
             return Ok(AnyStepper::new(Whole::<B>::of(declaration, numbers, h, method)?));
+        }
+        _ if !declaration.constraints.each.is_empty() => {
+            return refused(
+                "is none of those for constraints on velocities; take the step or a composition, or leave the constraints out",
+            );
         }
         _ if declaration.has_force && !has_own_steps => {
             return refused("needs a scene without a force; take the step, or leave the force out");
@@ -159,7 +165,8 @@ pub fn for_accuracy<B: Backend<f64>>(
     }
     sized(declaration, numbers).map_err(WholeError::from)?;
     let mut schemes: Vec<Scheme> = of_any_group(declaration.is_self_adjoint).collect();
-    if is_of_rotations::<B>(declaration).map_err(WholeError::from)? && !declaration.has_force {
+    let has_lagrangian = !declaration.has_force && declaration.constraints.each.is_empty();
+    if has_lagrangian && is_of_rotations::<B>(declaration).map_err(WholeError::from)? {
         let scene = RotatingScene::<B>::of(declaration, numbers).map_err(WholeError::from)?;
         schemes.extend(SO3::schemes(&scene));
     }

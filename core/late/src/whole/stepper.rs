@@ -187,6 +187,7 @@ impl<B: Backend<f64>> Whole<B> {
             limit.check_inertia()?;
         }
         limit.check_momentum(momentum)?;
+        limit.check_constraints(momentum, &self.stages.first().numbers)?;
         let state = self.begin(attitude, momentum);
         if !are_finite(&state[sizes.advected()..sizes.history()]) {
             return Err(SetupError::NonFinite { what: "view of what is advected" });

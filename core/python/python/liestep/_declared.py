@@ -211,14 +211,14 @@ class Sum:
     summands: tuple[Summand, ...]
     #: As it is written: ``SO3``, ``(SO3, R3)``.
     group: str
-    #: ``"lagrangian"``, or ``"force"`` where there are forces alone.
+    #: ``"lagrangian"``, or ``"force"`` or ``"nonholonomic"`` where there are forces or constraints alone.
     role: str
     has_pace: bool
 
     @classmethod
     def of(cls: type[AnySum], summand: Summand, derived: _native.Derivation) -> AnySum:
         """A sum of one summand."""
-        return cls((summand,), derived.group, "force" if derived.is_force else "lagrangian", derived.has_pace)
+        return cls((summand,), derived.group, derived.role, derived.has_pace)
 
     def __add__(self: AnySum, other: Sum) -> AnySum:
         if not isinstance(other, Sum):

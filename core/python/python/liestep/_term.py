@@ -15,7 +15,7 @@ from .errors import DeclarationError
 
 
 class Term(Sum):
-    """A text with numbers; what `liestep.lagrangian` and `liestep.force` return, and sums of them.
+    """A text with numbers; what `liestep.lagrangian`, `liestep.force` and `liestep.nonholonomic` return, and sums of them.
 
     It is data: it pickles, compares and adds. What it declares is derived where it is made, and proved there. A sum has
     the programs of its summands: any of them on one group add, in any order.
@@ -31,7 +31,7 @@ class Term(Sum):
     group : str
         The group, as ``SO3``.
     role : str
-        ``"lagrangian"``, or ``"force"`` where there are forces alone.
+        ``"lagrangian"``, or ``"force"`` or ``"nonholonomic"`` where there are forces or constraints alone.
     has_pace : bool
         Whether it is stepped in a time of its own.
     """
@@ -249,3 +249,55 @@ def force(
     if displacement:
         head = f"displacement({displacement}), work"
     return _declared("force", group, head, work, advected, numbers, generators)
+
+
+def nonholonomic(
+    group: Group,
+    *,
+    zero: str,
+    generators: Any = None,
+    advected: Mapping[str, str] | None = None,
+    velocity: str = "Omega",
+    discretise: str = "trapezoid(Cayley)",
+    **parameters: Any,
+) -> Term:
+    """A constraint that is linear in the velocity, such as rolling without sliding; it adds to Lagrangians of its group.
+
+    Each increment satisfies it, and each velocity after a step, to rounding, by the discrete Lagrange–d'Alembert principle. The
+    step isn't symplectic any more, and momenta are kept along directions alone that satisfy the constraint.
+
+    Parameters
+    ----------
+    group, generators, advected, **parameters
+        As of `lagrangian`.
+    zero : str
+        Linear in the velocity, a scalar, which the motion keeps at zero. Several constraints are several terms.
+    velocity : str
+        What the velocity is called in `zero`; of several bodies names with commas.
+    discretise : str
+        The rule by which an increment satisfies it.
+
+    Returns
+    -------
+    Term
+        What adds to others. The velocity at the start of a run has to satisfy it.
+
+    Raises
+    ------
+    DeclarationError
+        With line and column of the text; also where it isn't linear in the velocity.
+
+    Examples
+    --------
+    Suslov's body can't turn about an axis of its own:
+
+    >>> import liestep as ls
+    >>> suslov = ls.body([[2, 0, 0], [0, 1.5, 0.4], [0, 0.4, 1]]) + ls.nonholonomic("SO3", zero="a.dot(Omega)", a=[0, 0, 1])
+    >>> run = suslov.stepper(0.01).run(velocity=[-1.2, 0.7, 0], until=10)
+    >>> bool(abs(run.velocity[:, 2]).max() < 1e-14)
+    True
+    """
+    numbers = {name: _value(name, value) for name, value in parameters.items()}
+    names = [name.strip() for name in text("velocity", velocity).split(",")]
+    named = f"velocity = {names[0]}" if len(names) == 1 else f"velocity({', '.join(names)})"
+    return _declared("nonholonomic", group, f"{named}, discretise = {discretise}, zero", zero, advected, numbers, generators)

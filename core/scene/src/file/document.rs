@@ -38,6 +38,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let mut on = None;
     let lagrangian = take(&mut rest, Role::Lagrangian, &mut on).map_err(located)?;
     let force = take(&mut rest, Role::Force, &mut on).map_err(located)?;
+    let nonholonomic = take(&mut rest, Role::Nonholonomic, &mut on).map_err(located)?;
     if let Some(name) = named_method(&rest) {
         return Err(located((span(document, &["run", "method"]), format!("`{name}` {METHODS}"))));
     }
@@ -46,8 +47,10 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     if file.body.is_none() && lagrangian.is_empty() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
-    (file.lagrangian, file.force, file.over_time) = (lagrangian, force, over_time.into());
+    (file.lagrangian, file.force, file.nonholonomic) = (lagrangian, force, nonholonomic);
+    file.over_time = over_time.into();
     add(document, &mut file).map_err(located)?;
+    fixed(&file).map_or(Ok(()), |mistake| Err(located(mistake)))?;
     if let Some(start) = document.get_ref().get("start") {
         file.start = Beginning::read(start, &file.group, file.orbit.as_ref()).map_err(located)?;
     }
@@ -111,7 +114,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
 
 /// Adds the terms of a file with a Lagrangian that has the kinetic energy, and finds the group.
 fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage> {
-    let own = || file.lagrangian.iter().chain(&file.force);
+    let own = || file.own();
     let of_term = |place: &Range<usize>, error: LateError| (place.clone(), in_files(&error.to_string()));
     let is_of_body = |one: &DeclaredTerm| one.declaration.group() == "SO3";
     if file.body.is_some() {
@@ -138,7 +141,7 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage>
     let first = file.lagrangian[0].span.clone();
     let library = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
     let lagrangians = file.lagrangian.iter().map(|own| Ok(own.declaration));
-    let forces = file.force.iter().map(|own| Ok(own.declaration));
+    let forces = file.force.iter().chain(&file.nonholonomic).map(|own| Ok(own.declaration));
     let terms = lagrangians.chain(library).chain(forces).collect::<Result<Vec<_>, _>>();
     let terms = terms.map_err(|error| of_term(&first, error))?;
     let is_other = |one: &&DeclaredTerm| one.declaration.factors != file.lagrangian[0].declaration.factors;
@@ -350,6 +353,17 @@ fn of_density(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> 
     Some((span(document, &["run", "density"]), format!("a `density` is around {what}")))
 }
 
+/// The first of the constraints on velocities that leave no motion.
+fn fixed(file: &SceneFile) -> Option<SpanMessage> {
+    let group = &file.nonholonomic.first()?.declaration.factors;
+    let dimension: usize = group.iter().map(|factor| factor.generators.len()).sum();
+    let last = file.nonholonomic.get(dimension.checked_sub(1)?)?;
+    let message = format!(
+        "{dimension} constraints on velocities leave no motion on a group of dimension {dimension}: leave some out"
+    );
+    Some((last.span.clone(), message))
+}
+
 /// Conflicts with a method; those of a Lagrangian come first.
 fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
@@ -361,8 +375,11 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
         }
         let beside = file.effects().next().map(|(effect, _)| effect.key);
         let several = (file.lagrangian.len() > 1).then_some("lagrangian");
-        if let Some(key) = beside.or(several).or((!file.force.is_empty()).then_some("force")) {
-            let message = "a pace is that of the whole motion: its Lagrangian has all terms in its text, and no force";
+        let force = (!file.force.is_empty()).then_some("force");
+        let constraint = (!file.nonholonomic.is_empty()).then_some("nonholonomic");
+        if let Some(key) = beside.or(several).or(force).or(constraint) {
+            let message = "a pace is that of the whole motion: its Lagrangian has all terms in its text, no force and no \
+                           constraint";
             return wrong(&[key], message.to_owned());
         }
         if let Pace::Accuracy(_) = file.run.pace {
@@ -389,6 +406,11 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     {
         let name = kind(method);
         return wrong(&["run", "method"], format!("{name} needs a conservative scene; {force} does work"));
+    }
+    if !file.nonholonomic.is_empty() && !matches!(method, Scheme::Step | Scheme::Composition(_)) {
+        let message =
+            format!("{} needs a Lagrangian, and constraints on velocities leave none; leave it out", kind(method));
+        return wrong(&["run", "method"], message);
     }
     if let Scheme::Composition(scheme) = method
         && scheme.base() != file.order()

@@ -1,4 +1,5 @@
-//! The tables of Lagrangians and forces of the file's own: their texts are derived, and their parameters have numbers.
+//! The tables of Lagrangians, forces and constraints of the file's own: their texts are derived, and their parameters have
+//! numbers.
 
 use std::ops::Range;
 
@@ -22,7 +23,7 @@ pub(crate) type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
 pub(crate) type Backend = liestep_late::Interpreter;
 
-/// A Lagrangian or a force, with the numbers of its parameters.
+/// A Lagrangian, a force or a constraint on velocities, with the numbers of its parameters.
 #[derive(Clone)]
 pub(crate) struct DeclaredTerm {
     pub(crate) declaration: &'static Declaration,
@@ -54,6 +55,8 @@ const KEYS: &str = "a Lagrangian has `l_d`, or `l` with `discretise`; it may hav
                     `advected`, as in `advected = { w = \"up\" }`, and has a key for each parameter";
 const KEYS_OF_FORCES: &str = "a force has `work`; it may have `advected`, as in `advected = { w = \"up\" }`, and has a \
                               key for each parameter";
+const KEYS_OF_CONSTRAINTS: &str = "a constraint on velocities has `zero`; it may have a `velocity`, a `discretise`, \
+                                   `advected`, as in `advected = { w = \"up\" }`, and has a key for each parameter";
 const GROUP: &str = "a group is a name, as \"SE3\", or a table of a product's increments, as `{ F = \"SO3\", d = \"R3\" }`; \
                      one of your own has a name of its own and its `generators`";
 
@@ -74,14 +77,14 @@ pub(crate) struct Place {
     increments: Vec<String>,
 }
 
-/// Removes the tables of Lagrangians or of forces from a document, and reads them. A table without a group is on the
+/// Removes the tables of one kind from a document, and reads them. A table without a group is on the
 /// group of the ones before, and the first one on SO(3).
 pub(crate) fn take(
     document: &mut Document<'_>,
     role: Role,
     on: &mut Option<Place>,
 ) -> Result<Vec<DeclaredTerm>, SpanMessage> {
-    let name = if role == Role::Force { "force" } else { "lagrangian" };
+    let name = role.attribute();
     let Some((key, tables)) = document.get_mut().remove_entry(name) else { return Ok(Vec::new()) };
     let one = |table: &Spanned<DeValue<'_>>, span: Range<usize>, on: &mut Option<Place>| match table.get_ref() {
         DeValue::Table(table) => Text::of(table, span, role, on)?.declared(),
@@ -169,7 +172,7 @@ impl<'t, 'a> Text<'t, 'a> {
     }
 
     fn read_head(&mut self) -> Result<(), SpanMessage> {
-        if let Some((pace, at)) = self.text("pace")?.filter(|_| self.role != Role::Force) {
+        if let Some((pace, at)) = self.text("pace")?.filter(|_| self.role == Role::Lagrangian) {
             // The energy comes first, so that any number of advected vectors can follow.
             self.line(&format!("given(E_0 = {ENERGY}), pace = {{ {pace} }},"), at);
             self.has_a_pace = true;
@@ -180,6 +183,12 @@ impl<'t, 'a> Text<'t, 'a> {
         let (key, (expression, at)) = if self.role == Role::Force {
             self.read_names("displacement", None)?;
             ("work", self.text("work")?.ok_or_else(|| (self.span.clone(), KEYS_OF_FORCES.to_owned()))?)
+        } else if self.role == Role::Nonholonomic {
+            self.read_names("velocity", Some("Omega"))?;
+            if let Some((discretise, at)) = self.text("discretise")? {
+                self.line(&format!("discretise = {discretise},"), at);
+            }
+            ("zero", self.text("zero")?.ok_or_else(|| (self.span.clone(), KEYS_OF_CONSTRAINTS.to_owned()))?)
         } else {
             match (self.text("l_d")?, self.text("l")?, self.text("discretise")?) {
                 (Some(l_d), None, None) => ("l_d", l_d),
@@ -201,6 +210,7 @@ impl<'t, 'a> Text<'t, 'a> {
     fn read_parameters(&mut self) -> Result<(), SpanMessage> {
         let known: &[&str] = match self.role {
             Role::Force => &["group", "generators", "work", "displacement", "advected"],
+            Role::Nonholonomic => &["group", "generators", "zero", "velocity", "discretise", "advected"],
             _ => &["group", "generators", "l_d", "l", "velocity", "discretise", "pace", "advected"],
         };
         let mut own: Vec<_> = self.table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref())).collect();
@@ -222,8 +232,11 @@ impl<'t, 'a> Text<'t, 'a> {
     fn declared(self) -> Result<DeclaredTerm, SpanMessage> {
         let lines: Vec<&str> = self.lines.iter().map(|line| line.text.as_str()).collect();
         let fields: Vec<String> = self.parameters.iter().map(|one| format!("{}: {}", one.name, one.kind)).collect();
-        let (attribute, name) =
-            if self.role == Role::Force { ("force", "Force") } else { ("lagrangian", "Lagrangian") };
+        let (attribute, name) = match self.role {
+            Role::Force => ("force", "Force"),
+            Role::Nonholonomic => ("nonholonomic", "Nonholonomic"),
+            _ => ("lagrangian", "Lagrangian"),
+        };
         let whole = format!("#[{attribute}(\n{}\n)]\nstruct {name} {{ {} }}", lines.join("\n"), fields.join(", "));
         let declaration = Declaration::parse(&whole).map_err(|error| self.mistake(error))?;
         let numbers = self.parameters.into_iter().flat_map(|one| one.numbers).collect();

@@ -71,7 +71,7 @@ pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverT
     let context = (path, orbit.as_ref());
     for (name, tables) in document.get_mut().iter_mut() {
         let name = name.get_ref().to_string();
-        let is_own = name == "lagrangian" || name == "force";
+        let is_own = ["lagrangian", "force", "nonholonomic"].contains(&name.as_str());
         if !is_own && !EFFECTS.iter().any(|effect| effect.key == name) {
             continue;
         }

@@ -107,6 +107,8 @@ effects! { scene_file
     pub(crate) lagrangian: Vec<DeclaredTerm>,
     #[serde(default, deserialize_with = "taken")]
     pub(crate) force: Vec<DeclaredTerm>,
+    #[serde(default, deserialize_with = "taken")]
+    pub(crate) nonholonomic: Vec<DeclaredTerm>,
     #[serde(default, deserialize_with = "control::taken")]
     pub(crate) control: Vec<Control>,
     #[serde(default, deserialize_with = "control::taken")]
@@ -249,7 +251,14 @@ impl SceneFile {
             1 => "a wheel".to_owned(),
             count => format!("{count} wheels"),
         });
-        body.chain(own).chain(effects).chain(force).chain(control).chain(wheels).collect::<Vec<_>>().join(" + ")
+        let constraint = self.nonholonomic.iter().map(|_| "a constraint of its own".to_owned());
+        let own = body.chain(own).chain(effects).chain(force).chain(constraint);
+        own.chain(control).chain(wheels).collect::<Vec<_>>().join(" + ")
+    }
+
+    /// The terms of the file's own.
+    pub(crate) fn own(&self) -> impl Iterator<Item = &DeclaredTerm> {
+        self.lagrangian.iter().chain(&self.force).chain(&self.nonholonomic)
     }
 
     /// The name of the first force.
@@ -304,6 +313,7 @@ impl SceneFile {
         let own = match one.table.as_str() {
             "lagrangian" => &mut self.lagrangian,
             "force" => &mut self.force,
+            "nonholonomic" => &mut self.nonholonomic,
             table => {
                 return numbers.iter().enumerate().all(|(at, &number)| self.put([table, &one.key], at, number, ""));
             }
@@ -327,7 +337,7 @@ impl SceneFile {
 
     /// Order of the scene's own step; effects are kicks of second order.
     pub(crate) fn order(&self) -> u32 {
-        let is_free = self.effects().next().is_none() && self.lagrangian.is_empty() && self.force.is_empty();
+        let is_free = self.effects().next().is_none() && self.own().next().is_none();
         if is_free { self.kinetic().order() } else { 2 }
     }
 }

@@ -8,7 +8,6 @@ use liestep_late::{Declaration, LateError};
 use crate::file::body::{Distribution, Kinetic};
 use crate::file::effects::EFFECTS;
 use crate::file::joint::{Joint, Kind};
-use crate::file::lagrangian::DeclaredTerm;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::bodies::{Coil, Cord, HeavyBody};
@@ -97,10 +96,6 @@ impl SceneFile {
         let listed = self.terms().filter_map(|name| declaration(&name)).map(Declaration::parse);
         let own = self.own().map(|one| Ok(one.declaration));
         form.of(Declaration::sum(&listed.chain(own).collect::<Result<Vec<_>, _>>()?)?)
-    }
-
-    fn own(&self) -> impl Iterator<Item = &DeclaredTerm> {
-        self.lagrangian.iter().chain(&self.force)
     }
 
     /// The names of the body and the effects.

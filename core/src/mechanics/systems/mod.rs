@@ -108,6 +108,10 @@ const fn check<P: Places<E>, E: Effect, const M: usize>() {
         return;
     }
     assert!(
+        E::FACTS.constraints == 0,
+        "a constraint on velocities is for one body, or for bodies that are declared as one product"
+    );
+    assert!(
         !E::FACTS.parts.unknown || !E::Kinetic::IS_THERE,
         "between the bodies of a system only potentials are possible: this term couples their velocities; declare all of \
          these bodies as one product, `group(F_1 = SO3, F_2 = SO3, …)`, or take `liestep::methods::Chain`"

@@ -75,6 +75,10 @@ impl<S: Effect> OwnStep<S> {
     /// The bounds for this `w`, at this step and at half of it: they are proved only for one dependence of the kinetic
     /// part on `h`.
     fn turning_limits(&self, scene: &S, advected: &S::Advected) -> Option<TurningLimits> {
+        // A reaction can be as large as it needs be.
+        if const { S::FACTS.constraints > 0 } {
+            return None;
+        }
         let at = |h: Scalar<S>| {
             let constants = scene.constants(h);
             let terms = step_terms::<S>(&constants, &Vector::<S>::zero(), advected);

@@ -1,6 +1,7 @@
 //! The step of a declared Lagrangian, or of a sum: its own momentum equation (2.7), solved.
 
 mod diagnosis;
+mod reactions;
 
 pub(crate) use diagnosis::beyond_solvable;
 
@@ -46,6 +47,7 @@ impl<S: Effect> OwnStep<S> {
     /// The plan, as by [`new`](Self::new), for a scene that is known to have a kinetic part.
     pub(crate) fn folded(scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         scene.validate()?;
+        check_number::<S>(scene)?;
         // 1/h and the constants that depend on it must be finite, unless h is zero.
         if !is_finite(h) || !(h == real(0.0) || is_finite(real::<Scalar<S>>(1.0) / h)) {
             return Err(SetupError::InvalidStep { step: reported(h) });
@@ -114,6 +116,10 @@ impl<S: Effect> OwnStep<S> {
     /// The step by the fast path; `None` if anything about it is doubtful.
     #[hot]
     fn increment_directly<M: SumsOf<S>>(&self, scene: &S, motion: &M, half_guess: &Vector<S>) -> Option<Increment<S>> {
+        // The solve with care has the constraints.
+        if const { S::FACTS.constraints > 0 } {
+            return None;
+        }
         let now = motion.now();
         let problem = self.problem(scene, &now.momentum, &now.advected);
         let root = problem.solve_directly::<true>(half_guess, self.largest_target)?;
@@ -136,7 +142,11 @@ impl<S: Effect> OwnStep<S> {
             return Ok(Self::stand_still(momentum, advected));
         }
         let root = self.solve_carefully(scene, momentum, advected, half_guess)?;
-        let made = self.moved(motion, &kicked::<S>(&self.constants, momentum, advected), &root);
+        let made = if const { S::FACTS.constraints > 0 } {
+            self.moved_with_reactions(scene, motion, &root)
+        } else {
+            self.moved(motion, &kicked::<S>(&self.constants, momentum, advected), &root)
+        };
         if made.momentum.is_finite() && made.advected.is_finite() {
             Ok(made)
         } else {
@@ -185,7 +195,10 @@ impl<S: Effect> OwnStep<S> {
             a: kicked::<S>(&self.constants, momentum, w),
             w,
             h: self.h,
-            safe: if scene.facts().has_constant_inertia {
+            // The determinants of an inertia bound no Jacobian with constraints.
+            safe: if const { S::FACTS.constraints > 0 } {
+                real(f64::INFINITY)
+            } else if scene.facts().has_constant_inertia {
                 self.safe
             } else {
                 safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>()).1)
@@ -284,6 +297,23 @@ fn look<S: Effect, M: Summation<Group<S>, S::Advected>>(scene: &S, motion: &mut 
 /// zero.
 pub(crate) fn half_coordinates<S: Effect>(scene: &S, motion: &MotionOf<S>, h: Scalar<S>) -> Vector<S> {
     estimated_velocity(scene, &motion.momentum, &motion.advected) * (h * real(0.5))
+}
+
+/// Checks that constraints on velocities leave a motion, whose velocity a momentum determines in one solve.
+fn check_number<S: Effect>(scene: &S) -> Result<(), SetupError> {
+    let (constraints, dimension) = (S::FACTS.constraints, <Group<S> as LieGroup>::DIMENSION);
+    if constraints == 0 {
+        return Ok(());
+    }
+    if constraints >= dimension {
+        return Err(SetupError::NoMotion { constraints, dimension });
+    }
+    if scene.facts().is_quadratic {
+        return Ok(());
+    }
+    let cause = "is known for constraints on velocities where the Lagrangian is quadratic in the velocity; leave them out, \
+                 or write the kinetic energy as a square";
+    Err(SetupError::Method { cause })
 }
 
 /// The right-hand side `a = μ + kick_before(w)`.

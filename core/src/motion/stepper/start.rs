@@ -3,7 +3,9 @@
 use super::{StateOf, Stepper};
 use crate::error::SetupError;
 use crate::groups::{Advected, LieGroup};
-use crate::mechanics::{Effect, Group, Scalar, Vector, check_inertia, check_velocity, velocity_of_momentum};
+use crate::mechanics::{
+    Effect, Group, Scalar, Vector, check_constraints, check_inertia, check_velocity, velocity_of_momentum,
+};
 use crate::motion::kept::Kept;
 use crate::motion::plan::Plan;
 use crate::motion::state::{ElapsedTime, State};
@@ -24,7 +26,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// [`SetupError`] if the attitude isn't in the group, a number isn't finite, or an inertia that depends on advected
     /// or prescribed parameters is degenerate there; [`SetupError::AmbiguousVelocity`] if the continuous limit isn't
-    /// quadratic in the velocity, and the inverse Legendre transform of the momentum is another velocity.
+    /// quadratic in the velocity, and the inverse Legendre transform of the momentum is another velocity;
+    /// [`SetupError::ViolatedConstraint`] and [`SetupError::RedundantConstraint`] of a scene with constraints on velocities.
     pub fn start(&self, attitude: impl Into<Group<S>>, velocity: Vector<S>) -> Result<StateOf<S, P>, SetupError> {
         if !velocity.is_finite() {
             return Err(SetupError::NonFinite { what: "velocity" });
@@ -62,6 +65,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         if !self.scene.facts().is_quadratic && !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
             return Err(SetupError::NoVelocity);
+        }
+        if const { S::FACTS.constraints > 0 } {
+            check_constraints(&self.scene, &velocity_of_momentum(&self.scene, &momentum, &w), &w)?;
         }
         let state = self.begin(attitude, momentum);
         check_range(&state)?;

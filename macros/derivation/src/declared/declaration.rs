@@ -18,6 +18,8 @@ pub enum Role {
     Force,
     /// `#[constraint(… zero = …)]`.
     Constraint,
+    /// `#[nonholonomic(… zero = …)]`.
+    Nonholonomic,
 }
 
 impl Role {
@@ -26,7 +28,7 @@ impl Role {
         match self {
             Self::Lagrangian => "l_d",
             Self::Force => "work",
-            Self::Constraint => "zero",
+            Self::Constraint | Self::Nonholonomic => "zero",
         }
     }
 
@@ -36,6 +38,7 @@ impl Role {
             Self::Lagrangian => "a Lagrangian",
             Self::Force => "virtual work",
             Self::Constraint => "a constraint",
+            Self::Nonholonomic => "a constraint on velocities",
         }
     }
 
@@ -44,7 +47,7 @@ impl Role {
         match self {
             Self::Lagrangian => "the Lagrangian",
             Self::Force => "the virtual work",
-            Self::Constraint => "the constraint",
+            Self::Constraint | Self::Nonholonomic => "the constraint",
         }
     }
 
@@ -53,7 +56,9 @@ impl Role {
     pub fn reserved(self, is_product: bool) -> &'static [&'static str] {
         match self {
             Self::Force if !is_product => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
-            Self::Lagrangian | Self::Force => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"],
+            Self::Lagrangian | Self::Force | Self::Nonholonomic => {
+                &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"]
+            }
             // A constraint has no steps.
             Self::Constraint => &["I", "hat", "vee", "log", "exp", "inverse"],
         }
@@ -65,6 +70,7 @@ impl Role {
             Self::Lagrangian => "lagrangian",
             Self::Force => "force",
             Self::Constraint => "constraint",
+            Self::Nonholonomic => "nonholonomic",
         }
     }
 }
@@ -81,10 +87,10 @@ pub struct Declaration {
     /// The increments, one for each factor of the group.
     pub factors: Vec<Factor>,
     pub advected: Vec<AdvectedParameter>,
-    /// The Lagrangian, the virtual work of a force, or the constraint; `None` where a mistake elsewhere hides its
+    /// The Lagrangian, the virtual work of a force, or a constraint; `None` where a mistake elsewhere hides its
     /// meaning.
     pub expression: Option<Expr>,
-    /// The velocities and the discretisation of a continuous Lagrangian `l`.
+    /// The velocities and the discretisation of a continuous Lagrangian `l`, or of a constraint on velocities.
     pub continuous: Option<Continuous>,
     /// The index of `E_0` among the advected and given parameters, if a pace has rewritten the expression.
     pub energy: Option<usize>,
@@ -227,6 +233,11 @@ impl Declaration {
     /// The name of the velocity of a factor for messages, `Omega` where it has none.
     pub fn velocity_or_omega(&self, factor: usize) -> String {
         self.velocity(factor).map_or_else(|| "Omega".to_owned(), ToString::to_string)
+    }
+
+    /// An example of a product with the velocity, `a.dot(&Omega)`; texts need no `&`.
+    pub fn product_with_velocity(&self) -> String {
+        format!("`a.dot({}{})`", if self.is_text { "" } else { "&" }, self.velocity_or_omega(0))
     }
 
     /// The name of the velocity of a factor in formulas.

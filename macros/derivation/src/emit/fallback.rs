@@ -26,11 +26,11 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     let header = Header::new(&declaration);
     match role {
         Role::Constraint => constraint(&header),
-        Role::Lagrangian | Role::Force => of_effect(&declaration, &header),
+        Role::Lagrangian | Role::Force | Role::Nonholonomic => of_effect(&declaration, &header),
     }
 }
 
-/// The stand-in of a Lagrangian or a force.
+/// The stand-in of a Lagrangian, a force or a constraint on velocities.
 fn of_effect(declaration: &Declaration, header: &Header) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let none = quote_spanned!(span=> ());
@@ -78,7 +78,7 @@ fn of_effect(declaration: &Declaration, header: &Header) -> TokenStream {
     header.enclosing(implementations)
 }
 
-/// The implementations of a Lagrangian or a force besides that of an effect.
+/// The implementations of a declaration besides that of an effect.
 fn of_role(declaration: &Declaration, header: &Header) -> TokenStream {
     let (span, private) = (Span::mixed_site(), &header.private);
     let (vector, square, matrix, scalar) = (header.vector(), header.square(), header.matrix(), &header.scalar);
@@ -119,6 +119,17 @@ fn of_role(declaration: &Declaration, header: &Header) -> TokenStream {
                     fn diamond_rate(&self, _: &#vector, _: &Self::Advected) -> #vector { loop {} }
                     fn diamond_matrix(&self, _: &#vector, _: &Self::Advected) -> #matrix { loop {} }
                     fn momentum_advection(&self, _: &#vector, _: &Self::Advected) -> #vector { loop {} }
+                }
+            }
+        }
+        Role::Nonholonomic => {
+            let constraint = header.implementation("Nonholonomic");
+            quote_spanned! {span=>
+                #constraint {
+                    fn zero(&self, _: &#vector, _: &Self::Advected) -> #scalar { loop {} }
+                    fn at_increment(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #scalar { loop {} }
+                    fn slope(&self, _: &#matrix, _: &Self::Advected, _: #scalar) -> #vector { loop {} }
+                    fn reaction(&self, _: &Self::Advected) -> #vector { loop {} }
                 }
             }
         }

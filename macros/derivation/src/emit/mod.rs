@@ -1,4 +1,4 @@
-//! Tokens: the implementations of `Effect`, `DiscreteLagrangian` and `Add`, and their stand-in after a mistake.
+//! Tokens: the implementations of `Effect`, `DiscreteLagrangian`, `Force`, `Nonholonomic` and `Add`, and their stand-in after a mistake.
 //!
 //! This room alone quotes tokens. Deliberately not here: any mathematical decision. The room knows all below itself.
 
@@ -11,6 +11,7 @@ mod gradients;
 mod header;
 mod inputs;
 mod lanes;
+mod nonholonomic;
 mod own_group;
 mod page;
 mod stages;
@@ -90,6 +91,9 @@ pub(crate) fn implementation(
     let (names, symbols) = (&lowered.names, &derived.symbols);
     let code = Code { declaration, header: &header, names, symbols, directions: Some(&derived.directions) };
     let emitter = Emitter { code, lowered, derived, kernel, equations };
+    if declaration.role == Role::Nonholonomic {
+        return nonholonomic::implementation(&emitter, [arguments, item], findings);
+    }
     let texts = equations_of(declaration, chosen, equations);
     let (mathematics, effect) = emitter.mathematics(&findings.jacobian, &texts);
     let stages = stages::stages(&emitter, &findings.stages, &texts);
@@ -166,6 +170,9 @@ pub(crate) fn text(
     equations: Option<&Equations>,
     findings: &Findings,
 ) -> String {
+    if declaration.role == Role::Nonholonomic {
+        return nonholonomic::derivation(declaration, chosen, findings);
+    }
     let texts = equations_of(declaration, chosen, equations);
     derivation_of(declaration, chosen, &texts, equations, findings)
 }

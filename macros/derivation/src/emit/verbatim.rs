@@ -1,4 +1,4 @@
-//! The declared expression, unchanged, as the method `l_d`, `l` or `virtual_work`.
+//! The declared expression, unchanged, as the method `l_d`, `l`, `virtual_work` or `zero`.
 //!
 //! Its names are bound to values with the types that the macro assumed, so that rustc checks these. Their spans keep
 //! the place but resolve at the bindings, whatever `macro_rules!` they came through; the names of its own `let`s keep
@@ -184,6 +184,10 @@ fn signature(declaration: &Declaration, header: &Header) -> TokenStream {
         Role::Lagrangian if declaration.continuous.is_some() => quote_spanned! {span=>
             /// The Lagrangian as declared.
             fn l(&self, velocity: &#vector, w: &Self::Advected) -> #scalar
+        },
+        Role::Nonholonomic => quote_spanned! {span=>
+            /// The constraint as declared.
+            fn zero(&self, velocity: &#vector, w: &Self::Advected) -> #scalar
         },
         Role::Lagrangian | Role::Constraint => quote_spanned! {span=>
             /// The Lagrangian as declared.

@@ -21,6 +21,18 @@ pub fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) ->
     mistakes.is_empty().then_some(())
 }
 
+/// Reports the part of a constraint that isn't linear in the velocities; `None` if there is one.
+pub fn linear(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
+    let Some(part) = verify::not_linear(declaration, tree) else { return Some(()) };
+    let example = declaration.product_with_velocity();
+    let message = format!(
+        "a constraint on velocities is linear in them, as {example} is: leave out what has no velocity, and powers and \
+         functions of one"
+    );
+    errors.push_between([part.span, part.end], message);
+    None
+}
+
 /// The message for a term: the mistake and the correction.
 fn term(mistake: TermMistake, declaration: &Declaration) -> String {
     let by_a_power = |least: i32| format!("; if it is a correction, write its power as `h.powi({least})` or higher");

@@ -24,7 +24,7 @@ pub use choose::{Choice, cheapest};
 pub use constraint::held;
 pub use continuous::{Equations, continuous, of_declared};
 pub use discretise::discretised;
-pub use explain::terms;
+pub use explain::{linear, terms};
 pub use findings::findings;
 pub use momenta::conserved;
 pub use places::{count, variables};

@@ -1,7 +1,7 @@
 //! The programs of a step, of its kernel and its derived terms.
 
 use super::sources::{Sources, carried, parameter_kind};
-use super::{Array, Factor, Operation, Parameter, Program, Source, StagedDeclaration, Stages};
+use super::{Array, Constraints, Factor, Operation, Parameter, Program, Source, StagedDeclaration, Stages};
 use crate::declared::{Declaration, Role};
 use crate::emit;
 use crate::expand::Steps;
@@ -26,7 +26,8 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
     };
     let factors = declaration.factors.iter().zip(declaration.group.factors());
     let is_nonlinear = |equations: &&Equations| equations.derived.inverse == Inverse::Nonlinear;
-    StagedDeclaration {
+    let reaction = alone(&(limit_graph.clone(), at_rest[1].clone()));
+    let whole = StagedDeclaration {
         name: declaration.item.ident.to_string(),
         role: declaration.role,
         factors: factors.map(|(named, own)| Factor { name: named.group_name(), generators: generators(own) }).collect(),
@@ -66,7 +67,9 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
                 ]
             }),
         },
-    }
+        constraints: Constraints::default(),
+    };
+    if declaration.role == Role::Nonholonomic { whole.into_constraint(reaction) } else { whole }
 }
 
 fn at_velocity(declaration: &Declaration, equations: &Equations) -> [Program; 3] {

@@ -7,6 +7,7 @@
 //! Deliberately not here: any mathematical decision, and the execution of a program. The room knows all below itself.
 
 mod build;
+mod constraints;
 mod sources;
 
 use proc_macro2::TokenStream;
@@ -16,6 +17,8 @@ use crate::declared::{Declaration, Role, parse};
 use crate::expand::{self, Judgement};
 pub use crate::mathematics::symbolic::Function;
 use crate::mathematics::symbolic::work;
+pub(crate) use constraints::Constants;
+pub use constraints::{Constraint, Constraints};
 
 /// Straight-line code on numbers. Registers hold the inputs, then the literals, then the result of each operation.
 #[derive(Clone, Debug, PartialEq)]
@@ -328,6 +331,8 @@ pub struct StagedDeclaration {
     pub in_increment: bool,
     /// The components at which the Jacobian falls into blocks.
     pub blocks: Vec<usize>,
+    /// The constraints on velocities.
+    pub constraints: Constraints,
     /// The programs.
     pub programs: Stages<Program>,
 }
@@ -345,7 +350,7 @@ pub enum Refusal {
 /// by the Cayley map, takes three quarters of it.
 pub const MOST_WORK: u64 = 6_000_000;
 
-/// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]` and verifies the derivation, as the macro does, within a
+/// Derives a struct with `#[lagrangian(…)]`, `#[force(…)]` or `#[nonholonomic(…)]` and verifies the derivation, as the macro does, within a
 /// limit on work: products of terms, terms that become programs, and their operations. Returns also the work done.
 ///
 /// # Errors

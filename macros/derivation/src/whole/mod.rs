@@ -10,13 +10,14 @@
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!
-//! The files depend on each other in one direction: `{step → {limit, certified}, collocation, directions} → tangent → writer →
+//! The files depend on each other in one direction: `{step → {limit, certified}, collocation, directions} → tangent → constraints → writer →
 //! {actions, solved} → factor → relations → {basis, matrix → values}`.
 
 mod actions;
 mod basis;
 mod certified;
 mod collocation;
+mod constraints;
 mod directions;
 mod factor;
 mod limit;
@@ -33,6 +34,7 @@ use std::fmt;
 pub use crate::mathematics::chart::Chart;
 pub use basis::{Basis, Form};
 pub use collocation::Canonical;
+pub use constraints::constrained;
 pub use directions::in_directions;
 pub use factor::MatrixFactor;
 pub use step::{Programs, Sizes, WholeStep};
@@ -55,6 +57,15 @@ pub enum StepRefusal {
     NotQuadratic,
     /// There is no kinetic part, so that no velocity has a momentum.
     NoKinetic,
+    /// As many constraints on velocities as the group has dimensions, or more, leave no motion.
+    Fixed {
+        /// The number of constraints.
+        constraints: usize,
+        /// The dimension of the group.
+        dimension: usize,
+    },
+    /// Constraints on velocities need a Lagrangian that is quadratic in the velocity.
+    NotQuadraticVelocity,
     /// The programs of the step don't make one, which is a fault of this library.
     Wrong {
         /// The claim that isn't met.
@@ -82,6 +93,15 @@ impl fmt::Display for StepRefusal {
                 "collocation leaves this group, which isn't one of linear and quadratic relations: take a composition"
             ),
             Self::NoKinetic => write!(f, "there is no kinetic part, so no step: add a Lagrangian of the velocity"),
+            Self::Fixed { constraints, dimension } => write!(
+                f,
+                "{constraints} constraints on velocities leave no motion on a group of dimension {dimension}: leave some out"
+            ),
+            Self::NotQuadraticVelocity => write!(
+                f,
+                "constraints on velocities need a Lagrangian that is quadratic in the velocity: leave them out, or write \
+                 the kinetic energy as a square"
+            ),
             Self::Wrong { claim } => write!(f, "{claim} in the step as it is written: please report this declaration"),
             Self::TooLong { most } => {
                 write!(f, "a step has more than {most} operations: declare a smaller group or a shorter Lagrangian")

@@ -88,6 +88,9 @@ pub struct Programs<P = Program> {
     pub branch: P,
     /// Determinants and diagonals of the inertia where it varies, of parameters and advected.
     pub safe: Option<P>,
+    /// The covectors `A(w)` of the reactions of constraints on velocities, of advected parameters and constants; then the
+    /// squares of their parts across those before.
+    pub reactions: Option<P>,
     /// The advected parameters, of attitude and parameters.
     pub seen: P,
     /// The distance from the group and a nearer matrix, of the attitude, for each factor that
@@ -126,6 +129,7 @@ impl<P> Programs<P> {
             again: make(&self.again)?,
             finish: make(&self.finish)?,
             safe: self.safe.as_ref().map(&mut make).transpose()?,
+            reactions: self.reactions.as_ref().map(&mut make).transpose()?,
             constants: make(&self.constants)?,
             newton: make(&self.newton)?,
             branch: make(&self.branch)?,
@@ -173,6 +177,13 @@ impl WholeStep {
             return Err(StepRefusal::NoKinetic);
         }
         let dimension: usize = staged.factors.iter().map(|factor| factor.generators.len()).sum();
+        let constraints = staged.constraints.each.len();
+        if constraints >= dimension {
+            return Err(StepRefusal::Fixed { constraints, dimension });
+        }
+        if constraints > 0 && !staged.is_quadratic {
+            return Err(StepRefusal::NotQuadraticVelocity);
+        }
         let too_long = StepRefusal::TooLong { most: MOST_OPERATIONS };
         // An elimination has `n³/3` products alone.
         if dimension.pow(3) / 3 > MOST_OPERATIONS {
@@ -224,7 +235,9 @@ impl Writer<'_> {
             finish: self.finish(),
             newton,
             branch: self.branch(),
-            safe: (!self.staged.has_constant_inertia).then_some(safe),
+            // The determinants of an inertia bound no Jacobian with constraints.
+            safe: (!self.staged.has_constant_inertia && !self.is_constrained()).then_some(safe),
+            reactions: self.reactions(),
             seen: self.seen(),
             restored: self.restored(),
             defect: self.defect(),
@@ -274,6 +287,7 @@ impl Writer<'_> {
         let jacobian = self.with_increments(&mut words, &self.staged.programs.momentum_jacobian, &d, &read);
         let step = Value::Input(Source::new(Array::Step, 0));
         let jacobian = Matrix { rows: n, columns: n, entries: jacobian }.scaled(&mut words, step);
+        let jacobian = self.branch_with_constraints(&mut words, &d, jacobian);
         let determinants = self.pattern.factorise(&mut words, &jacobian).determinants;
         all.extend(determinants.as_flattened());
         for factor in &self.factors {
@@ -327,11 +341,12 @@ impl Writer<'_> {
     fn transported(&self, words: &mut Words, d: &[Matrix], next: &[Value]) -> Vec<Value> {
         let (n, stages) = (self.dimension(), &self.staged.programs);
         let (momentum, target) = (Value::inputs(Array::Momentum, n), Value::inputs(Array::Target, n));
+        let target = self.reacted(words, &Value::inputs(Array::Half, n), &target);
         let [_, has_before, has_after] = self.staged.parts;
         let factors = self.factors.iter().zip(d);
         let mut moved: Vec<Value> =
             factors.flat_map(|(factor, d)| factor.coadjoint_change(words, d, factor.own(&target))).collect();
-        if has_before {
+        if has_before || self.is_constrained() {
             let kick = words.subtracted(&target, &momentum);
             moved = words.added(&moved, &kick);
         }
@@ -343,7 +358,8 @@ impl Writer<'_> {
             let kick = self.with_increments(words, &stages.kick_after, d, &read);
             moved = words.added(&moved, &kick);
         }
-        words.added(&momentum, &moved)
+        let momentum = words.added(&momentum, &moved);
+        self.projected(words, &momentum, next)
     }
 
     fn attitudes(&self) -> Vec<Matrix> {

@@ -98,21 +98,34 @@ impl<'a> Writer<'a> {
         self.with_increments(words, program, &d, other)
     }
 
-    /// The residual of the momentum equation.
+    /// The residual of the momentum equation, with the constraints.
     pub(super) fn residual(&self, words: &mut Words, half: &[Value]) -> Vec<Value> {
+        let free = self.free_residual(words, half);
+        self.with_constraints(words, half, (free, None), &Value::Input).0
+    }
+
+    /// The residual of the momentum equation without reactions.
+    pub(super) fn free_residual(&self, words: &mut Words, half: &[Value]) -> Vec<Value> {
         let program = &self.staged.programs.newton_residual;
         let mut residual = self.with_increments_of(words, program, half, &Value::Input);
         residual.truncate(self.dimension());
         residual
     }
 
-    /// The residual, and the Jacobian by half the coordinates.
+    /// The residual, and the Jacobian by half the coordinates, with the constraints.
     pub(super) fn system(
         &self,
         words: &mut Words,
         half: &[Value],
         other: &dyn Fn(Source) -> Value,
     ) -> (Vec<Value>, Matrix) {
+        let (residual, jacobian) = self.free_system(words, half, other);
+        let (residual, constrained) = self.with_constraints(words, half, (residual, Some(jacobian.clone())), other);
+        (residual, constrained.unwrap_or(jacobian))
+    }
+
+    /// The system of the momentum equation without reactions.
+    fn free_system(&self, words: &mut Words, half: &[Value], other: &dyn Fn(Source) -> Value) -> (Vec<Value>, Matrix) {
         let n = self.dimension();
         let mut residual = self.with_increments_of(words, &self.staged.programs.newton_system, half, other);
         let jacobian = Matrix { rows: n, columns: n, entries: residual.split_off(n) };

@@ -48,6 +48,7 @@ impl TokenDeclaration {
             Some("lagrangian") => Role::Lagrangian,
             Some("force") => Role::Force,
             Some("constraint") => Role::Constraint,
+            Some("nonholonomic") => Role::Nonholonomic,
             other => panic!("{text}\nhas the attribute {other:?}"),
         };
         Some(Self { role, arguments, item: tokens.collect(), expansion: OnceCell::new() })

@@ -63,6 +63,7 @@ pub fn functions(declaration: &Declaration, errors: &mut Errors) -> Option<Vec<R
         let shape = tree.shape.describe();
         let advice = match declaration.role {
             Role::Force => "take its `.dot(…)` with a displacement",
+            Role::Nonholonomic => "declare one constraint for each component, and add them",
             _ => "take a `.trace()` or a `.dot(…)`",
         };
         let noun = declaration.role.noun();

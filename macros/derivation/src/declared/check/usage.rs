@@ -19,6 +19,18 @@ pub(super) fn check(declaration: &Declaration, used: &[Name], errors: &mut Error
         check_names(declaration, used, errors);
         return;
     }
+    if declaration.role == Role::Nonholonomic {
+        if !used.iter().any(|name| matches!(name, Name::Velocity(_))) {
+            let name = declaration.velocity_or_omega(0);
+            let example = declaration.product_with_velocity();
+            let message = format!(
+                "the constraint depends on no velocity, which `velocity = {name}` names: it is linear in one, as {example} is"
+            );
+            errors.push_over(declaration.expression.as_ref().map(super::value), message);
+        }
+        check_names(declaration, used, errors);
+        return;
+    }
     if declaration.continuous.is_some() {
         let unused = |(factor, _): &(usize, &Ident)| !used.contains(&Name::Velocity(*factor));
         let unused: Vec<&Ident> =

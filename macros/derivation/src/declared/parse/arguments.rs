@@ -71,18 +71,22 @@ fn skip_argument(input: ParseStream) {
 fn known(role: Role) -> Vec<&'static str> {
     let mut known = match role {
         Role::Constraint => vec!["group", "advected", role.key(), "crate"],
+        Role::Nonholonomic => {
+            vec!["group", "advected", "given", role.key(), "velocity", "discretise", "generators", "crate"]
+        }
         _ => vec!["group", "advected", "given", role.key(), "generators", "gradients", "crate"],
     };
     match role {
         Role::Lagrangian => known.extend(["l", "velocity", "discretise", "pace"]),
         Role::Force => known.push("displacement"),
-        Role::Constraint => {}
+        Role::Constraint | Role::Nonholonomic => {}
     }
     known
 }
 
 fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
     let known = known(role);
+    let has_velocity = known.contains(&"velocity");
     one_comma(input)?;
     let Some(key) = key(input, &known) else {
         if !arguments.has_nameless {
@@ -108,6 +112,15 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             path.map_err(|_| syn::Error::new(input.span(), message))?;
             arguments.root = Some(input.call(Path::parse_mod_style)?);
         }
+        "zero" if role == Role::Nonholonomic => {
+            once(arguments.continuous.is_some());
+            equals(&key, input)?;
+            // A rule that isn't its own adjoint would make steps of the first order.
+            let place = [key.span(); 2];
+            let usual = Discretisation { quadrature: Quadrature::Trapezoid, coordinates: Coordinates::Cayley, place };
+            arguments.discretisation.get_or_insert((key.clone(), usual));
+            arguments.continuous = Some((key, input.parse()?));
+        }
         expression if expression == role.key() => {
             once(arguments.expression.is_some());
             equals(&key, input)?;
@@ -119,7 +132,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             equals(&key, input)?;
             *place = Some((key, input.parse()?));
         }
-        "velocity" if role == Role::Lagrangian => {
+        "velocity" if has_velocity => {
             once(arguments.velocity.is_some());
             arguments.velocity = Some((key.clone(), velocities(&key, input)?));
         }
@@ -128,13 +141,14 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             let names = displacements(&key, input)?;
             arguments.displacement = Some((key, names));
         }
-        "discretise" if role == Role::Lagrangian => {
-            once(arguments.discretisation.is_some());
+        "discretise" if has_velocity => {
+            // A constraint has a discretisation without being given one.
+            once(arguments.discretisation.as_ref().is_some_and(|(key, _)| key == "discretise"));
             equals(&key, input)?;
             without_quotes(&key, input)?;
             arguments.discretisation = Some((key, discretisation(input)?));
         }
-        "gradients" if role != Role::Constraint => {
+        "gradients" if known.contains(&"gradients") => {
             once(arguments.gradients.is_some());
             if !is_at_end(input) {
                 return Err(syn::Error::new(input.span(), "`gradients` stands alone: remove what follows it"));

@@ -21,7 +21,7 @@ pub(super) fn fields(
         let what = match role {
             Role::Lagrangian => "a Lagrangian",
             Role::Force => "a force",
-            Role::Constraint => "a constraint",
+            Role::Constraint | Role::Nonholonomic => "a constraint",
         };
         errors.push(item.ident.span(), format!("{what} is a struct with named fields: its parameters"));
         return Default::default();

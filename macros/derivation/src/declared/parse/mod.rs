@@ -47,11 +47,15 @@ pub fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Ro
     let role = |attribute: &syn::Attribute| match attribute.path().segments.last()?.ident.to_string().as_str() {
         "lagrangian" => Some(Role::Lagrangian),
         "force" => Some(Role::Force),
+        "nonholonomic" => Some(Role::Nonholonomic),
         _ => None,
     };
     let found = item.attrs.iter().enumerate().find_map(|(at, attribute)| Some((at, role(attribute)?)));
     let Some((at, role)) = found else {
-        errors.push(item.ident.span(), "a declaration is a struct with `#[lagrangian(…)]` or `#[force(…)]`");
+        errors.push(
+            item.ident.span(),
+            "a declaration is a struct with `#[lagrangian(…)]`, `#[force(…)]` or `#[nonholonomic(…)]`",
+        );
         return None;
     };
     let attribute = item.attrs.remove(at);
@@ -89,10 +93,9 @@ pub fn declared_again(item: &ItemStruct) -> Option<&Path> {
     item.attrs.iter().map(syn::Attribute::path).find(|path| {
         let is_ours = path.segments.len() == 1 || path.segments.first().is_some_and(|first| first.ident == "liestep");
         is_ours
-            && path
-                .segments
-                .last()
-                .is_some_and(|last| ["lagrangian", "force", "constraint"].iter().any(|name| last.ident == name))
+            && path.segments.last().is_some_and(|last| {
+                ["lagrangian", "force", "constraint", "nonholonomic"].iter().any(|name| last.ident == name)
+            })
     })
 }
 
@@ -222,6 +225,7 @@ fn missing(role: Role) -> &'static str {
         }
         Role::Force => "the virtual work is missing: write `work = …`, linear in `eta` and `eta_next`",
         Role::Constraint => "the constraint is missing: write `zero = …`, a function of where two bodies are",
+        Role::Nonholonomic => "the constraint is missing: write `velocity = Omega, zero = …`, linear in `Omega`",
     }
 }
 
@@ -234,7 +238,7 @@ fn kind(
 ) -> (Option<Expr>, Option<Continuous>) {
     let (velocity, discretisation) = (arguments.velocity.take(), arguments.discretisation.take());
     let Some((key, l)) = arguments.continuous.take() else {
-        if let Some((key, names)) = velocity {
+        if let Some((key, names)) = velocity.filter(|_| role == Role::Lagrangian) {
             let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
             let message = format!(
                 "`velocity` belongs to a continuous Lagrangian `l = …`; in `l_d` the velocity of a step is in `F`: remove \

@@ -65,6 +65,7 @@ mod reversal;
 pub mod sample;
 pub mod series;
 pub mod value;
+mod velocity;
 
 use std::collections::BTreeMap;
 
@@ -88,6 +89,7 @@ pub use outcome::{Findings, Objection, Sureness};
 pub use sample::Subject;
 use sample::{Element, Sample};
 use value::Value;
+pub use velocity::not_linear;
 
 /// The number of points with real numbers, and the number of draws that may be tried for them.
 const SAMPLES: usize = 3;

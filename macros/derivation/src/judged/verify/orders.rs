@@ -330,7 +330,7 @@ fn is_step(tree: &Tree) -> bool {
 }
 
 /// The two terms of a sum, with the scalar factors and divisors around it; each keeps its own place.
-fn split_within(tree: &Rc<Tree>, depth: usize) -> Option<[Rc<Tree>; 2]> {
+pub(super) fn split_within(tree: &Rc<Tree>, depth: usize) -> Option<[Rc<Tree>; 2]> {
     let depth = depth.checked_sub(1)?;
     let each = |parts: [Rc<Tree>; 2], kind: &dyn Fn(Rc<Tree>) -> Kind| {
         parts.map(|part| Tree::in_place_of(&part.clone(), kind(part)))

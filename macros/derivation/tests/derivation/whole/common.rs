@@ -155,6 +155,7 @@ pub(super) fn declared(factors: &[Generators], carried: Vec<Carried>) -> StagedD
         is_self_adjoint: true,
         in_increment: false,
         blocks: Vec::new(),
+        constraints: liestep_derivation::Constraints::default(),
         programs: Stages {
             constants: inputs(Array::Parameters, n + n * n),
             kick_before: program(|_| vec![Symbol::ZERO; n]),
