@@ -55,6 +55,8 @@ pub enum Form {
     Rust,
     /// A step in C99.
     C,
+    /// The step as data, with the claims that are to be checked.
+    Certificate,
 }
 
 impl Form {
@@ -63,6 +65,7 @@ impl Form {
             Self::Latex => Ok(liestep_late::latex(declaration)),
             Self::Rust => Ok(liestep_late::rust(declaration)),
             Self::C => liestep_late::c(declaration),
+            Self::Certificate => liestep_late::certificate(declaration),
         }
     }
 }
