@@ -34,7 +34,7 @@ def main() -> int:
     given = parser.parse_args()
     is_right = True
     for file in given.files:
-        began, data = time.perf_counter(), json.loads(file.read_text(encoding="utf-8"))
+        began, data = time.process_time(), json.loads(file.read_text(encoding="utf-8"))
         found = verified(data)
         if given.c:
             found["digest"] = data["digests"]["c"] == "sha256:" + hashlib.sha256(given.c.read_bytes()).hexdigest()
@@ -46,7 +46,7 @@ def main() -> int:
             if holds is not True:
                 print(f"{file}: {name}: {holds or 'WRONG'}")
         count = sum(holds is True for holds in found.values())
-        print(f"{file}: {data['name']}: {count} of {len(found)} claims hold ({time.perf_counter() - began:.1f} s)")
+        print(f"{file}: {data['name']}: {count} of {len(found)} claims hold ({time.process_time() - began:.1f} s)")
     return 0 if is_right or given.table else 1
 
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import cached_property
 from typing import Any, NamedTuple
 
-from .field import HALF, ONE, ZERO, Declined, Dual, Matrix, Unlucky, column, dot, draw, drawn, functions, number, product, simplest, total
+from .field import (
+    HALF, ONE, ZERO, Declined, Dual, Matrix, Unlucky, column, dot, draw, drawn, functions, number, product, simplest, total,
+)
 from .motion import Carried, Factor, Term, drawn_field, stored_kind
 from .text import long_decimals
 
@@ -52,8 +55,17 @@ class Point(NamedTuple):
     y: list[Dual]
     f: list[Matrix]
     w: list[Matrix]
-    before: list[Dual]
-    after: list[Dual]
+
+
+class System(NamedTuple):
+    """A Newton system at a point: residual, Jacobian, update, determinants."""
+
+    point: Point
+    a: list[Dual]
+    r: list[Dual]
+    jacobian: Matrix
+    update: list[Dual]
+    pairs: list[Dual]
 
 
 class Step:
@@ -62,7 +74,7 @@ class Step:
     def __init__(self, data: dict[str, Any]) -> None:
         if data["format"] != "liestep certificate 1":
             raise Declined(f"the format {data['format']}")
-        self.power, self.ends = data["power"], data["ends"]
+        self.data, self.power, self.ends = data, data["power"], data["ends"]
         self.factors = [Factor(one) for one in data["factors"]]
         self.n = sum(len(factor.generators) for factor in self.factors)
         decimals = sorted({one for text in data["texts"] for one in long_decimals(text)})
@@ -74,8 +86,8 @@ class Step:
             self.terms.append(term)
             at, field = at + len(term.names), field + len(term.declaration.fields)
         fields = [one for term in self.terms for one in term.declaration.fields]
-        expected = [(one["name"].rpartition(".")[2], one["kind"], one["rows"], one["columns"]) for one in data["parameters"]]
-        if [(one.name, *stored_kind(one)) for one in fields] != expected or at != len(self.carried):
+        kinds = [(one["kind"], one["rows"], one["columns"]) for one in data["parameters"]]
+        if [stored_kind(one) for one in fields] != kinds or at != len(self.carried):
             raise Declined("other parameters")
         numbers = [drawn_field(one) for one in fields]
         self.stored, self.values = [entries for entries, _ in numbers], [value for _, value in numbers]
@@ -114,23 +126,39 @@ class Step:
             space.append(one.whole(entries))
         return self.moved(space, g, [one.inverse for one in g])
 
-    def point(self) -> Point:
-        """A point with these parameters: several draws, as a text may have several radicands."""
-        for _ in range(DRAWS):
-            try:
-                return self.drawn_point()
-            except Unlucky:
-                continue
-        raise Unlucky
+    @cached_property
+    def here(self) -> Point:
+        """The point of most claims."""
+        return self.point()
 
-    def drawn_point(self) -> Point:
-        g, y = self.elements(drawn(self.n)), drawn(self.n)
+    @cached_property
+    def system(self) -> System:
+        """The Newton system there, with some target."""
+        a, n = drawn(self.n), self.n
+        found = self.newton(self.here.y, a, self.here)
+        rest = found[n + n * n :]
+        return System(self.here, a, found[:n], Matrix.of(found[n : n + n * n], n), rest[:n], rest[n:])
+
+    def point(self) -> Point:
+        g = self.elements(drawn(self.n))
         w = self.seen(g)
         for at, one in enumerate(self.carried):
             if one.action == "given":
                 w[at] = one.whole(drawn(one.rows * one.columns))
-        f = self.elements(y)
-        return Point(g, y, f, w, *self.momenta(f, w))
+        return Point(g, *self.increment(w), w)
+
+    def increment(self, w: Sequence[Matrix]) -> tuple[list[Dual], list[Matrix]]:
+        """Half the coordinates of an increment at which the texts have a value: several draws, one for each radicand."""
+        for _ in range(DRAWS):
+            y = drawn(self.n)
+            try:
+                f = self.elements(y)
+                self.declared(f, w)
+                self.work(f, w, ([ZERO] * self.n, [ZERO] * self.n))
+            except Unlucky:
+                continue
+            return y, f
+        raise Unlucky
 
     def each(self, w: Sequence[Matrix]) -> list[tuple[Term, list[Any], list[Matrix]]]:
         """The terms, with their fields and what they see."""
@@ -148,19 +176,21 @@ class Step:
 
     def work(self, f: Sequence[Matrix], w: Sequence[Matrix], eta: Sequence[Sequence[Dual]]) -> Dual:
         texts = ((term, fields, own) for term, fields, own in self.each(w) if "work" in term.declaration.expressions)
-        return total(term.work(fields, self.h, f, own, eta) for term, fields, own in texts)
+        return total(term.work(term.scope(fields, self.h, f, own), eta) for term, fields, own in texts)
 
-    def momenta(self, f: Sequence[Matrix], w: Sequence[Matrix]) -> tuple[list[Dual], list[Dual]]:
+    def momenta(self, point: Point) -> tuple[list[Dual], list[Dual]]:
         """The momenta of the declared texts before and after an increment, (2.7) and (2.6)."""
+        f, w, none = point.f, point.w, [ZERO] * self.n
         before, after = [], []
         for k in range(self.n):
             unit = [Dual(int(j == k)) for j in range(self.n)]
-            near = [(Matrix.one(factor.rows), factor.hat([x * Dual(0, 1) for x in own])) for factor, own in zip(self.factors, self.own(unit), strict=True)]
-            forth, back = [one + small for one, small in near], [one - small for one, small in near]
+            along = [[x * Dual(0, 1) for x in own] for own in self.own(unit)]
+            small = [factor.hat(own) for factor, own in zip(self.factors, along, strict=True)]
+            forth, back = ([Matrix.one(len(e.rows)) + e * number(sign) for e in small] for sign in (1, -1))
             turned = self.declared([e * one for e, one in zip(forth, f, strict=True)], self.moved(w, back, forth))
-            before.append(Dual(turned.b) - self.work(f, w, (unit, [ZERO] * self.n)))
+            before.append(Dual(turned.b) - self.work(f, w, (unit, none)))
             beyond = self.declared([one * e for e, one in zip(forth, f, strict=True)], w)
-            after.append(Dual(beyond.b) + self.work(f, w, ([ZERO] * self.n, unit)))
+            after.append(Dual(beyond.b) + self.work(f, w, (none, unit)))
         return before, after
 
     def kick(self, point: Point) -> list[Dual]:
@@ -183,23 +213,24 @@ class Step:
     def are_determinants(self, pairs: Sequence[Dual], jacobian: Matrix) -> bool:
         minors = [product(pairs[0 : 2 * k + 2 : 2]) for k in range(len(self.ends))]
         expected = self.determinants(jacobian)
-        return len(pairs) == 2 * len(self.ends) and same(minors, [a for a, _ in expected]) and same(pairs[1::2], [b for _, b in expected])
+        has_all = len(pairs) == 2 * len(self.ends)
+        return has_all and same(minors, [a for a, _ in expected]) and same(pairs[1::2], [b for _, b in expected])
 
 
 # Each claim is a function of a step; a claim that holds for some points only is none.
 
 
 def work(step: Step) -> bool:
-    point, n = step.point(), step.n
+    point, n = step.here, step.n
     eta = drawn(n), drawn(n)
-    units = [[Dual(int(j == k)) for j in range(n)] for k in range(n)]
-    none = [ZERO] * n
-    apart = [step.work(point.f, point.w, (unit, none)) for unit in units], [step.work(point.f, point.w, (none, unit)) for unit in units]
-    return same([step.work(point.f, point.w, eta)], [dot(eta[0], apart[0]) + dot(eta[1], apart[1])])
+    units, none = Matrix.one(n).rows, [ZERO] * n
+    before = [step.work(point.f, point.w, (unit, none)) for unit in units]
+    after = [step.work(point.f, point.w, (none, unit)) for unit in units]
+    return same([step.work(point.f, point.w, eta)], [dot(eta[0], before) + dot(eta[1], after)])
 
 
 def target(step: Step) -> bool:
-    point, momentum = step.point(), drawn(step.n)
+    point, momentum = step.here, drawn(step.n)
     found = step.run("target", point, momentum=momentum)
     a = found[: step.n]
     return same([x - m for x, m in zip(a, momentum, strict=True)], step.kick(point)) and same(found[step.n :], [dot(a, a)])
@@ -207,34 +238,18 @@ def target(step: Step) -> bool:
 
 def residual(step: Step) -> bool:
     scales = []
-    for _ in range(2):
-        point, a = step.point(), drawn(step.n)
+    for point in (step.here, step.point()):
+        a = drawn(step.n)
+        before, _ = step.momenta(point)
         weight = product([ONE + dot(point.y, point.y)] * step.power)
         found = step.newton(point.y, a, point)[: step.n]
-        missed = [m + k - x for m, k, x in zip(point.before, step.kick(point), a, strict=True)]
+        missed = [m + k - x for m, k, x in zip(before, step.kick(point), a, strict=True)]
         scales.append([r / (weight * x) for r, x in zip(found, missed, strict=True)])
     return same(*scales) and all(scale.a for scale in scales[0])
 
 
-class System(NamedTuple):
-    """A Newton system at a point: residual, Jacobian, update, determinants."""
-
-    point: Point
-    a: list[Dual]
-    r: list[Dual]
-    jacobian: Matrix
-    update: list[Dual]
-    pairs: list[Dual]
-
-
-def system(step: Step) -> System:
-    point, a, n = step.point(), drawn(step.n), step.n
-    found = step.newton(point.y, a, point)
-    return System(point, a, found[:n], Matrix.of(found[n : n + n * n], n), found[n + n * n : 2 * n + n * n], found[2 * n + n * n :])
-
-
 def jacobian(step: Step) -> bool:
-    at = system(step)
+    at = step.system
     columns = []
     for j in range(step.n):
         along = [Dual(y.a, int(i == j)) for i, y in enumerate(at.point.y)]
@@ -243,17 +258,17 @@ def jacobian(step: Step) -> bool:
 
 
 def update(step: Step) -> bool:
-    at = system(step)
+    at = step.system
     return same((at.jacobian * column(at.update)).flat, at.r)
 
 
 def determinants(step: Step) -> bool:
-    at = system(step)
+    at = step.system
     return step.are_determinants(at.pairs, at.jacobian)
 
 
 def iterate(step: Step) -> bool:
-    at, n = system(step), step.n
+    at, n = step.system, step.n
     found = step.run("iterate", at.point, target=at.a)
     following = [y - u for y, u in zip(at.point.y, at.update, strict=True)]
     squares = [dot(at.update, at.update), dot(following, following)]
@@ -261,7 +276,8 @@ def iterate(step: Step) -> bool:
 
 
 def again(step: Step) -> bool:
-    at, n, y = system(step), step.n, drawn(step.n)
+    at, n = step.system, step.n
+    y, _ = step.increment(at.point.w)
     factors = step.run("iterate", at.point, target=at.a)[n + 2 :]
     found = step.run("again", at.point._replace(y=y), target=at.a, factors=factors)
     moved = [a - b for a, b in zip(y, found[:n], strict=True)]
@@ -270,7 +286,7 @@ def again(step: Step) -> bool:
 
 
 class End(NamedTuple):
-    """The end of a step from a momentum that has this increment, and its parts."""
+    """The end of a step, whatever the momentum, and its parts."""
 
     point: Point
     history: list[Dual]
@@ -294,8 +310,7 @@ def end(step: Step, point: Point, momentum: list[Dual]) -> End:
 
 
 def at_end(step: Step) -> End:
-    point = step.point()
-    return end(step, point, point.before)
+    return end(step, step.here, drawn(step.n))
 
 
 def attitude(step: Step) -> bool:
@@ -304,15 +319,16 @@ def attitude(step: Step) -> bool:
 
 
 def momentum(step: Step) -> bool:
-    found = at_end(step)
-    return same(found.momentum, found.point.after)
+    point = step.here
+    before, after = step.momenta(point)
+    return same(end(step, point, before).momentum, after)
 
 
 def transport(step: Step) -> bool:
-    first, change = at_end(step), drawn(step.n)
-    second = end(step, first.point, [m + x for m, x in zip(first.point.before, change, strict=True)])
+    point, before, change = step.here, drawn(step.n), drawn(step.n)
+    first, second = end(step, point, before), end(step, point, [m + x for m, x in zip(before, change, strict=True)])
     expected = []
-    for factor, f, own in zip(step.factors, first.point.f, step.own(change), strict=True):
+    for factor, f, own in zip(step.factors, point.f, step.own(change), strict=True):
         expected += [dot(own, factor.components(f * e * f.inverse)) for e in factor.generators]
     return same([b - a for a, b in zip(first.momentum, second.momentum, strict=True)], expected)
 
@@ -333,7 +349,8 @@ def guess(step: Step) -> bool:
 
 def checks(step: Step) -> bool:
     found = at_end(step)
-    near = [factor.measure(y) for factor, y in zip(step.factors, step.own(found.point.y), strict=True) if not factor.is_translation]
+    each = zip(step.factors, step.own(found.point.y), strict=True)
+    near = [factor.measure(y) for factor, y in each if not factor.is_translation]
     return same(found.checks, [total(found.momentum + found.advected), *near])
 
 
@@ -383,19 +400,20 @@ def at_rest(step: Step, point: Point, h: Dual) -> Matrix:
 
 
 def rest(step: Step) -> bool:
-    point = step.point()
+    point = step.here
     found, still = step.run("rest", point), at_rest(step, point, step.h)
     return same(found[:1], [still.trace]) and step.are_determinants(found[1:], still)
 
 
 def safe(step: Step) -> bool:
     """The limit by the polynomial in `h` through many points, whose degree is tested by one point more."""
-    point, none, a = step.point(), [ZERO] * step.n, drawn(step.n)
+    point, none, a = step.here, [ZERO] * step.n, drawn(step.n)
     nodes, found = drawn(14), []
     for h in nodes:
         r = [step.programs["newton"].run(step.arrays(h, point._replace(y=none), target=x))[: step.n] for x in (none, a)]
         scale = [(x - y) / z for x, y, z in zip(*r, a, strict=True)]
-        found.append(Matrix([entry * h * HALF / s for entry in row] for row, s in zip(at_rest(step, point, h).rows, scale, strict=True)))
+        rows = zip(at_rest(step, point, h).rows, scale, strict=True)
+        found.append(Matrix([entry * h * HALF / s for entry in row] for row, s in rows))
 
     def limit(first: int, last: int) -> Matrix:
         places = range(first, last)
@@ -419,19 +437,24 @@ CLAIMS: dict[str, Callable[[Step], bool]] = {
 
 def verified(data: dict[str, Any]) -> dict[str, bool | str]:
     """Each claim that a certificate makes: whether it holds, or the reason why it can't be decided here."""
-    found: dict[str, bool | str] = {}
-    for one in data["claims"]:
-        found[one["name"]] = decided(data, CLAIMS[one["name"]])
+    functions.drawn.clear()
+    try:
+        step = Step(data)
+    except Declined as reason:
+        return {one["name"]: str(reason) for one in data["claims"]}
+    found = {}
+    for name in (one["name"] for one in data["claims"]):
+        found[name], step = decided(step, CLAIMS[name])
     return found
 
 
-def decided(data: dict[str, Any], claim: Callable[[Step], bool]) -> bool | str:
+def decided(step: Step, claim: Callable[[Step], bool]) -> tuple[bool | str, Step]:
+    """Whether a claim holds, and the step of which that was found."""
     for _ in range(DRAWS):
-        functions.drawn.clear()
         try:
-            return claim(Step(data))
+            return claim(step), step
         except Unlucky:
-            continue
+            step = Step(step.data)
         except Declined as reason:
-            return str(reason)
-    return f"no point was found in {DRAWS} draws"
+            return str(reason), step
+    return f"no point was found in {DRAWS} draws", step

@@ -36,9 +36,9 @@ class Dual:
     def __neg__(self) -> Dual:
         return Dual(-self.a, -self.b)
 
-    def __mul__(self, other: Any) -> Any:
+    def __mul__(self, other: Dual) -> Dual:
         if not isinstance(other, Dual):
-            return other * self
+            return NotImplemented
         return Dual(self.a * other.a, self.a * other.b + self.b * other.a)
 
     def __truediv__(self, other: Any) -> Dual:
@@ -63,7 +63,7 @@ def number(value: Fraction | int | str) -> Dual:
 
 
 def simplest(literal: float, decimals: Sequence[Fraction] = ()) -> Dual:
-    """The simplest fraction that a literal is the nearest float to, or multiple of a power of a long decimal of the text."""
+    """The simplest fraction that a literal is the nearest float to, or a multiple of a long decimal of the text."""
     for unit in (Fraction(1), *(decimal**k for decimal in decimals for k in range(1, 5))):
         exact = Fraction(literal) / unit
         for digits in range(7):
@@ -127,7 +127,7 @@ class Functions:
         return values[order], slopes[order]
 
     def log_ratio(self, order: int, n: Any) -> list[Any]:
-        """The derivatives up to an order, by u G⁽ᵏ⁺¹⁾ + (2k + 1) s G⁽ᵏ⁾ = 2k² G⁽ᵏ⁻¹⁾, the first of which is u G′ + s G = 1."""
+        """The derivatives up to an order, by u G⁽ᵏ⁺¹⁾ + (2k + 1) s G⁽ᵏ⁾ = 2k² G⁽ᵏ⁻¹⁾, which begins with u G′ + s G = 1."""
         s, u = 1 - 2 * n, 2 * n * (1 - n)
         if n == 0:
             found = [1]
@@ -209,6 +209,9 @@ class Matrix:
         if not isinstance(other, Matrix):
             return NotImplemented
         return Matrix([dot(row, column) for column in zip(*other.rows, strict=True)] for row in self.rows)
+
+    def __rmul__(self, other: Dual) -> Matrix:
+        return self * other
 
     def __truediv__(self, other: Dual) -> Matrix:
         return self * (ONE / other)

@@ -1,4 +1,4 @@
-"""The declared motion: increments of the group, actions on what is carried along, and the momenta of the declared texts."""
+"""The declared motion: increments of the group, actions on what is carried along, and the values of the declared texts."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ KNOWN = {
     "SO3": sparse(3, turns),
     "SE3": sparse(4, [*turns, *shifts(3, 3)]),
     "SE23": sparse(5, [*turns, *shifts(3, 3), *shifts(3, 4)]),
-    "SU2": sparse(4, [skew(i, j, half) + skew(k, m, half) for i, j, k, m in ((0, 1, 2, 3), (0, 2, 3, 1), (0, 3, 1, 2))]),
+    "SU2": sparse(4, [skew(0, i, half) + skew(j, k, half) for i, j, k in ((1, 2, 3), (2, 3, 1), (3, 1, 2))]),
     "SL2": sparse(2, [[(0, 0, half), (1, 1, -half)], [(0, 1, half), (1, 0, half)], skew(0, 1, half)]),
     "Heisenberg": sparse(3, [[(0, 1, 1)], [(1, 2, 1)], [(0, 2, 1)]]),
     "R1": sparse(2, shifts(1, 1)),
@@ -81,7 +81,8 @@ class Factor:
             return dot(hat.flat, hat.flat)
         for k in reversed(range(2, self.rows)):
             blocks = [Matrix(row[:k] for row in e.rows[:k]) for e in self.generators]
-            if all(is_zero(e + e.turned) for e in blocks) and not any(entry.a for e in self.generators for row in e.rows[k:] for entry in row):
+            below = [entry.a for e in self.generators for row in e.rows[k:] for entry in row]
+            if all(is_zero(e + e.turned) for e in blocks) and not any(below):
                 left = [entry for row in hat.rows for entry in row[:k]]
                 return dot(left, left) * HALF
         return dot(hat.flat, hat.flat)
@@ -131,7 +132,7 @@ class Carried(NamedTuple):
 
 
 ACTIONS = {"Vector": "covector", "SVector": "covector", "Point": "point", "ContravariantVector": "vector"}
-TENSORS = {"ContravariantTensor": "contravariant tensor", "CovariantTensor": "covariant tensor", "MixedTensor": "mixed tensor"}
+ACTIONS |= {f"{kind}Tensor": f"{kind.lower()} tensor" for kind in ("Contravariant", "Covariant", "Mixed")}
 
 
 class Term:
@@ -163,16 +164,17 @@ class Term:
 
     def check_carried(self, key: str, part: list[str]) -> None:
         name, _, value, *rest = part
-        space, dot_, method = value.partition(".")
         expected = self.carried[len(self.names)] if len(self.names) < len(self.carried) else None
         own = {field.name: at for at, field in enumerate(self.declaration.fields)}
         seen = rest[rest.index("(") + 1] if "(" in rest else None
+        found: tuple[str, list[int], int | None]
         if value in self.increments:
             of = [self.increments.index(value)]
-            found = ("configuration", of, None) if seen == "space" else ("relative", [*of, self.increments.index(str(seen))], None)
+            places = of if seen == "space" else [*of, self.increments.index(str(seen))]
+            found = ("configuration" if seen == "space" else "relative", places, None)
         else:
             field = self.declaration.fields[own[value]]
-            action = "given" if key == "given" else (ACTIONS | TENSORS)[field.base]
+            action = "given" if key == "given" else ACTIONS[field.base]
             by = [] if key == "given" else [self.increments.index(seen) if seen else 0]
             found = (action, by, own[value] + self.first)
         if expected is None or found != expected[:3]:
@@ -192,8 +194,11 @@ class Term:
     def hat(self, v: Matrix) -> Matrix:
         return next(f for f in self.factors if len(f.generators) == len(v.flat)).hat(v.flat)
 
-    def value(self, key: str, names: dict[str, Any]) -> Any:
-        return valued(self.declaration.expressions[key], names, self.hat)
+    def value(self, key: str, names: dict[str, Any]) -> Dual:
+        found = valued(self.declaration.expressions[key], names, self.hat)
+        if not isinstance(found, Dual):
+            raise Declined(f"`{key}` isn't a number")
+        return found
 
     def scope(self, fields: list[Any], h: Dual, f: Sequence[Matrix], w: Sequence[Matrix]) -> dict[str, Any]:
         size = next((factor.rows for at, factor in enumerate(self.factors) if not self.is_added(at)), 1)
@@ -223,7 +228,8 @@ class Term:
                 return self.value("l_d", names)
             ends = [self.value("pace", one) for one in (names, self.after(names, f, w))]
             names["h"] = h * (ends[0] + ends[1]) * HALF
-            return self.value("l_d", names) + names["h"] * names["E_0"]
+            energy: Dual = names["h"] * names["E_0"]
+            return self.value("l_d", names) + energy
         rule, *rest = self.declaration.arguments["discretise"][1:]
         velocities = self.velocities(rest[1] if rest else "chord", h, f)
 
@@ -262,8 +268,8 @@ class Term:
             found[0] = turn_[0] if len(turn_) == 1 else found[0]
         return dict(zip(declared, found, strict=True)) if declared else {}
 
-    def work(self, fields: list[Any], h: Dual, f: Sequence[Matrix], w: Sequence[Matrix], eta: Sequence[Sequence[Dual]]) -> Dual:
-        names = self.scope(fields, h, f, w)
+    def work(self, names: dict[str, Any], eta: Sequence[Sequence[Dual]]) -> Dual:
+        """The virtual work of displacements before and after, in the scope of an increment."""
         declared = [part[0] for part in self.declaration.list("displacement")] or ["eta"]
         for suffix, given in zip(("", "_next"), eta, strict=True):
             first = 0

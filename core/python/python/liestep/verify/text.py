@@ -255,7 +255,9 @@ def method(name: str, value: Any, given: list[Any], of: Callable[[Any], Any]) ->
         case "trace", []:
             return value.trace
         case "dot", [other]:
-            return value.dot(other) if isinstance(value, Chord) else other.dot(value) if isinstance(other, Chord) else dot(value.flat, other.flat)
+            if isinstance(value, Chord) or isinstance(other, Chord):
+                return value.dot(other) if isinstance(value, Chord) else other.dot(value)
+            return dot(value.flat, other.flat)
         case "norm_squared", []:
             return value.dot(value) if isinstance(value, Chord) else dot(value.flat, value.flat)
         case "norm", []:
@@ -317,7 +319,8 @@ class Declaration:
         rest = given[at:]
         fields = rest[rest.index("{") + 1 : behind(rest, rest.index("{")) - 1] if "{" in rest else []
         self.fields = [field(without_attributes(part)) for part in parts(fields, angles=True)]
-        self.expressions = {key: Parser(self.arguments[key][1:]).whole() for key in ("l_d", "l", "work", "pace") if key in self.arguments}
+        expressions = {key: self.arguments[key][1:] for key in ("l_d", "l", "work", "pace") if key in self.arguments}
+        self.expressions: dict[str, Any] = {key: Parser(given).whole() for key, given in expressions.items()}
 
     def list(self, key: str) -> list[list[str]]:
         """The parts of `key(…)`, or the one of `key = …`."""
