@@ -81,7 +81,8 @@ pub(crate) fn command() -> Command {
                 .arg(flag("latex", "The equations as LaTeX"))
                 .arg(flag("rust", "The straight-line code of a step in Rust"))
                 .arg(flag("c", "A step as C99 without dependencies"))
-                .group(ArgGroup::new("form").args(["latex", "rust", "c"]).requires("NAME")),
+                .arg(flag("certificate", "The step as data with its claims, for `python -m liestep.verify`"))
+                .group(ArgGroup::new("form").args(["latex", "rust", "c", "certificate"]).requires("NAME")),
         )
         .subcommand(import())
         .subcommand(

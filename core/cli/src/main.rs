@@ -215,7 +215,7 @@ fn derive(given: &ArgMatches) -> Result<(), Failure> {
         let names: Vec<_> = liestep_scene::derived().collect();
         return print(&(names.join("\n") + "\n"));
     };
-    let forms = [("latex", Form::Latex), ("rust", Form::Rust), ("c", Form::C)];
+    let forms = [("latex", Form::Latex), ("rust", Form::Rust), ("c", Form::C), ("certificate", Form::Certificate)];
     let form = forms.into_iter().find(|(flag, _)| given.get_flag(flag)).map(|(_, form)| form);
     if let Some(form) = form
         && let Some(written) = liestep_scene::written(name, form)

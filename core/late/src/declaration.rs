@@ -18,6 +18,8 @@ use crate::sum::summed;
 #[derive(Debug)]
 pub struct Declaration {
     staged: StagedDeclaration,
+    /// The texts of all terms.
+    texts: Vec<String>,
     pub(crate) parts: Parts,
     /// The code of the programs by each back end.
     made: Mutex<Vec<Arc<dyn Any + Send + Sync>>>,
@@ -80,7 +82,7 @@ impl Declaration {
         if text.len() > LONGEST {
             return Err(LateError::TooLong(LONGEST));
         }
-        Self::kept(text, || Self::derived(text))
+        Self::kept(text, || vec![text.to_owned()], || Self::derived(text))
     }
 
     /// An attitude displaced by small coordinates of the algebra, `g (I + ξ̂)`, by which the growth of rounding errors is
@@ -120,13 +122,15 @@ impl Declaration {
         }
         // Addresses identify declarations.
         let places: Vec<*const Self> = terms.iter().map(|&term| &raw const *term).collect();
-        let terms: Vec<&StagedDeclaration> = terms.iter().map(|term| &term.staged).collect();
-        Self::kept(&format!("{places:?}"), || summed(&terms))
+        let texts = || terms.iter().flat_map(|term| term.texts.iter().cloned()).collect();
+        let staged: Vec<&StagedDeclaration> = terms.iter().map(|term| &term.staged).collect();
+        Self::kept(&format!("{places:?}"), texts, || summed(&staged))
     }
 
     /// The stored declaration of this name, or a new one.
     fn kept(
         name: &str,
+        texts: impl FnOnce() -> Vec<String>,
         make: impl FnOnce() -> Result<StagedDeclaration, LateError>,
     ) -> Result<&'static Self, LateError> {
         let known = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
@@ -136,7 +140,7 @@ impl Declaration {
         if known().len() >= MOST {
             return Err(LateError::TooMany(MOST));
         }
-        let declaration = Self::of(make()?);
+        let declaration = Self::of(make()?, texts());
         // If two threads have derived a declaration at once, the first result is stored and the second dropped.
         Ok(known().entry(name.to_owned()).or_insert_with(|| Box::leak(Box::new(declaration))))
     }
@@ -161,9 +165,9 @@ impl Declaration {
         found.map(|(staged, _)| staged)
     }
 
-    fn of(staged: StagedDeclaration) -> Self {
+    fn of(staged: StagedDeclaration, texts: Vec<String>) -> Self {
         let [unknown, kick_before, kick_after] = staged.parts;
-        Self { parts: Parts { unknown, kick_before, kick_after }, made: Mutex::default(), staged }
+        Self { parts: Parts { unknown, kick_before, kick_after }, made: Mutex::default(), texts, staged }
     }
 
     /// The code that is made of the declaration, made once.
@@ -178,6 +182,12 @@ impl Declaration {
         let all = Arc::new(make()?);
         made.push(Arc::clone(&all) as Arc<dyn Any + Send + Sync>);
         Ok(all)
+    }
+
+    /// The text of each term, as it was declared.
+    #[must_use]
+    pub fn texts(&self) -> &[String] {
+        &self.texts
     }
 
     /// The group as it is written in Rust.

@@ -2,21 +2,24 @@
 //!
 //! # Inside
 //!
-//! `{compiled, latex, written} → declaration → sum → error` and `declaration → code → error`: a [`Declaration`] is the
+//! `{compiled, latex, certificate → written → emitted} → declaration → sum → error` and `declaration → code → error`: a [`Declaration`] is the
 //! derivation of a text, with its stages as straight-line programs, or the `sum` of several. A [`Backend`] runs programs:
 //! [`Interpreter`] here, machine code in `liestep-machine`. `whole → declaration` makes the steps of any declaration on any
 //! group, with slices of numbers for states: [`Whole`].
 #![forbid(unsafe_code)]
 
+mod certificate;
 mod code;
 mod compiled;
 mod declaration;
+mod emitted;
 mod error;
 mod latex;
 mod sum;
 mod whole;
 mod written;
 
+pub use certificate::certificate;
 pub use code::{Backend, Code, Given, Interpreter, StepInputs, UsualStep, applied};
 pub use compiled::numbers;
 pub use declaration::{Declaration, kept};

@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 
 use liestep::__private::{log_ratio_series, stumpff_series};
-use liestep_derivation::whole::{MatrixFactor, Programs, WholeStep};
+use liestep_derivation::whole::{MatrixFactor, WholeStep};
 use liestep_derivation::{Array, Function, Operation, Program};
 
 use crate::declaration::Declaration;
+use crate::emitted::{Emitted, emitted, name};
 use crate::error::LateError;
 
 /// A language, as far as its straight-line code differs from another's.
@@ -62,27 +63,6 @@ impl Language {
     }
 }
 
-const fn name(array: Array) -> &'static str {
-    match array {
-        Array::Step => "h",
-        Array::Parameters => "parameters",
-        Array::Constants => "constants",
-        Array::Advected => "advected",
-        Array::Next => "next",
-        Array::Element => "element",
-        Array::Increment => "increment",
-        Array::Inverse => "inverse",
-        Array::InverseIncrement => "inverse_increment",
-        Array::Half => "half",
-        Array::Velocity => "velocity",
-        Array::Target => "target",
-        Array::Attitude => "attitude",
-        Array::Momentum => "momentum",
-        Array::History => "history",
-        Array::Factors => "factors",
-    }
-}
-
 fn arrays(program: &Program) -> Vec<Array> {
     let mut arrays: Vec<Array> = program.inputs.iter().map(|source| source.array).collect();
     arrays.sort_unstable();
@@ -134,9 +114,9 @@ fn own_functions(program: &Program) -> impl Iterator<Item = Function> {
 }
 
 /// The functions of the exponential and the logarithm in C, those that the programs have, with the coefficients of their series.
-fn functions_in_c(programs: &Programs) -> String {
-    let mut used: Vec<Function> =
-        functions(programs).iter().filter_map(|(_, program)| *program).flat_map(own_functions).collect();
+fn functions_in_c(programs: &Emitted) -> String {
+    let programs = programs.iter().filter_map(|(_, program)| program.as_ref());
+    let mut used: Vec<Function> = programs.flat_map(own_functions).collect();
     used.sort_unstable();
     used.dedup();
     if used.is_empty() {
@@ -179,10 +159,19 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
         let _ = writeln!(text, "   parameters[{first}..{}]: {}", first + length, parameter.name);
         first += length;
     }
-    let (sizes, programs) = (&step.sizes, &step.programs);
+    let (sizes, mut programs) = (&step.sizes, emitted(&step));
+    // The system for a solve with care, which a step in C doesn't have.
+    programs.retain(|(name, _)| *name != "newton");
+    let outputs = |name| {
+        programs
+            .iter()
+            .find(|one| one.0 == name)
+            .and_then(|one| one.1.as_ref())
+            .map_or(0, |program| program.outputs.len())
+    };
     let constants = [
         ("PARAMETERS", first.max(1)),
-        ("CONSTANTS", programs.constants.outputs.len().max(1)),
+        ("CONSTANTS", outputs("constants").max(1)),
         ("ENTRIES", sizes.entries),
         ("N", sizes.n),
         ("CARRIED", sizes.carried),
@@ -190,18 +179,18 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
         ("DETS", sizes.dets),
         ("NEAR", sizes.near),
         ("ATTITUDES", sizes.attitudes),
-        ("RESTORED", programs.restored.outputs.len().max(1)),
+        ("RESTORED", outputs("restored").max(1)),
         ("IS_WHOLE", usize::from(step.factors.len() == 1)),
-        ("VARIES", usize::from(programs.safe.is_some())),
+        ("VARIES", usize::from(step.programs.safe.is_some())),
     ];
     let constants: Vec<String> = constants.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let _ = writeln!(text, "*/\n#include <math.h>\n\nenum {{\n    {}\n}};\n", constants.join(",\n    "));
     let arrays: Vec<String> =
         Array::ALL.iter().filter(|&&array| array != Array::Step).map(|&array| format!("*{}", name(array))).collect();
     let _ = writeln!(text, "typedef struct {{\n    double h;\n    const double {};\n}} Inputs;\n", arrays.join(", "));
-    text += &functions_in_c(programs);
-    for (name, program) in functions(programs) {
-        let body = program.map_or(String::new(), |program| Language::C.body(program));
+    text += &functions_in_c(&programs);
+    for (name, program) in &programs {
+        let body = program.as_ref().map_or(String::new(), |program| Language::C.body(program));
         let _ = writeln!(
             text,
             "static void {name}(const Inputs *in, double *outputs) {{\n    (void)in, (void)outputs;\n{body}}}\n"
@@ -220,22 +209,6 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
         .replace("RESTORED_PLACES", &listed(|factor| factor.entry))
         .replace("RESTORED_ENTRIES", &listed(|factor| factor.size() * factor.size()));
     Ok(text + &step + composition)
-}
-
-/// The programs that a step in C calls.
-fn functions(programs: &Programs) -> [(&'static str, Option<&Program>); 10] {
-    [
-        ("constants", Some(&programs.constants)),
-        ("target", Some(&programs.target)),
-        ("iterate", Some(&programs.iterate)),
-        ("again", Some(&programs.again)),
-        ("finish", Some(&programs.finish)),
-        ("safe", programs.safe.as_ref()),
-        ("seen", Some(&programs.seen)),
-        ("restored", Some(&programs.restored)),
-        ("defect", Some(&programs.defect)),
-        ("rest", Some(&programs.rest)),
-    ]
 }
 
 const HEAD: &str = include_str!("head.c");

@@ -128,6 +128,12 @@ impl Scene {
         Ok(self.0.c()?)
     }
 
+    /// The step as data, with the claims that are to be checked.
+    #[getter]
+    fn certificate(&self) -> PyResult<String> {
+        Ok(self.0.certificate()?)
+    }
+
     #[allow(clippy::needless_pass_by_value)]
     fn check(&self, h: f64, how: Names) -> PyResult<()> {
         Ok(self.0.stepper((method(&how)?, h)).map(drop)?)

@@ -89,6 +89,11 @@ impl Scene {
         Ok(liestep_late::c(self.declaration)?)
     }
 
+    /// The step as data, with the claims that are to be checked.
+    pub(crate) fn certificate(&self) -> Result<String, Failure> {
+        Ok(liestep_late::certificate(self.declaration)?)
+    }
+
     /// The run by a method and a step.
     pub(crate) fn run(&self, method: (Method, f64), start: &Start, course: &Course) -> Result<RunRecord, Failure> {
         let stepper = self.stepper(method)?;

@@ -1,6 +1,7 @@
 //! The program `liestep`, and through it the library of scenes.
 
 mod called;
+mod certificates;
 mod conventions;
 mod devices;
 mod ensembles;

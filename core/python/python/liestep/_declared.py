@@ -272,6 +272,26 @@ class Sum:
         return self._scene().c
 
     @property
+    def certificate(self) -> str:
+        """The step of the sum as data with its claims, as JSON: what `liestep.verify` checks.
+
+        Raises
+        ------
+        DeclarationError
+            The sum has no kinetic energy.
+
+        Examples
+        --------
+        >>> import json
+        >>> import liestep as ls
+        >>> from liestep.verify import verified
+        >>> found = verified(json.loads(ls.body([1, 2, 2.5]).certificate))
+        >>> len(found), all(found.values())
+        (17, True)
+        """
+        return self._scene().certificate
+
+    @property
     def numbers(self) -> Array:
         """The numbers of all parameters in one row, in the order of the C text; those of a matrix row by row."""
         return floats("numbers", [number for _, numbers in self._terms() for number in numbers], DeclarationError)

@@ -54,6 +54,8 @@ pub enum Form {
     Rust,
     /// A step in C99.
     C,
+    /// The step as data, with the claims that are to be checked.
+    Certificate,
 }
 
 impl Form {
@@ -62,6 +64,7 @@ impl Form {
             Self::Latex => Ok(liestep_late::latex(declaration)),
             Self::Rust => Ok(liestep_late::rust(declaration)),
             Self::C => liestep_late::c(declaration),
+            Self::Certificate => liestep_late::certificate(declaration),
         }
     }
 }
