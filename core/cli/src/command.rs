@@ -81,7 +81,10 @@ pub(crate) fn command() -> Command {
                 .arg(flag("latex", "The equations as LaTeX"))
                 .arg(flag("rust", "The straight-line code of a step in Rust"))
                 .arg(flag("c", "A step as C99 without dependencies"))
-                .group(ArgGroup::new("form").args(["latex", "rust", "c"]).requires("NAME")),
+                .arg(flag("header", "The declarations of that step, for other units"))
+                .arg(flag("gpu", "A step of many members as one text in OpenCL C, CUDA and C99"))
+                .arg(flag("js", "A step in JavaScript"))
+                .group(ArgGroup::new("form").args(["latex", "rust", "c", "header", "gpu", "js"]).requires("NAME")),
         )
         .subcommand(import())
         .subcommand(

@@ -55,6 +55,12 @@ pub enum Form {
     Rust,
     /// A step in C99.
     C,
+    /// The declarations of the step in C99, for other units.
+    Header,
+    /// A step of many members in OpenCL C, CUDA and C99.
+    Gpu,
+    /// A step in JavaScript.
+    JavaScript,
 }
 
 impl Form {
@@ -63,6 +69,9 @@ impl Form {
             Self::Latex => Ok(liestep_late::latex(declaration)),
             Self::Rust => Ok(liestep_late::rust(declaration)),
             Self::C => liestep_late::c(declaration),
+            Self::Header => liestep_late::header(declaration),
+            Self::Gpu => liestep_late::gpu(declaration),
+            Self::JavaScript => liestep_late::javascript(declaration),
         }
     }
 }
