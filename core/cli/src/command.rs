@@ -82,7 +82,10 @@ pub(crate) fn command() -> Command {
                 .arg(flag("rust", "The straight-line code of a step in Rust"))
                 .arg(flag("c", "A step as C99 without dependencies"))
                 .arg(flag("certificate", "The step as data with its claims, for `python -m liestep.verify`"))
-                .group(ArgGroup::new("form").args(["latex", "rust", "c", "certificate"]).requires("NAME")),
+                .arg(flag("header", "The declarations of that step, for other units"))
+                .arg(flag("gpu", "A step of many members as one text in OpenCL C, CUDA and C99"))
+                .arg(flag("js", "A step in JavaScript"))
+                .group(ArgGroup::new("form").args(["latex", "rust", "c", "header", "gpu", "js", "certificate"]).requires("NAME")),
         )
         .subcommand(import())
         .subcommand(

@@ -210,13 +210,23 @@ fn checked(path: &Path) -> Result<String, Failure> {
     Ok(scene.about() + "\n")
 }
 
+/// The forms of a derivation, by their flags.
+const FORMS: [(&str, Form); 7] = [
+    ("latex", Form::Latex),
+    ("rust", Form::Rust),
+    ("c", Form::C),
+    ("header", Form::Header),
+    ("gpu", Form::Gpu),
+    ("js", Form::JavaScript),
+    ("certificate", Form::Certificate),
+];
+
 fn derive(given: &ArgMatches) -> Result<(), Failure> {
     let Some(name) = given.get_one::<String>("NAME") else {
         let names: Vec<_> = liestep_scene::derived().collect();
         return print(&(names.join("\n") + "\n"));
     };
-    let forms = [("latex", Form::Latex), ("rust", Form::Rust), ("c", Form::C), ("certificate", Form::Certificate)];
-    let form = forms.into_iter().find(|(flag, _)| given.get_flag(flag)).map(|(_, form)| form);
+    let form = FORMS.into_iter().find(|(flag, _)| given.get_flag(flag)).map(|(_, form)| form);
     if let Some(form) = form
         && let Some(written) = liestep_scene::written(name, form)
     {

@@ -5,11 +5,12 @@ use std::collections::BTreeMap;
 use liestep_derivation::whole::{Value, WholeStep, Words};
 use liestep_derivation::{Array, Program, Source};
 
-/// The programs by their names; none for one that the step doesn't have. All but the last are called by the step in C.
+/// The programs by their names; none for one that the step doesn't have.
 pub(crate) type Emitted = Vec<(&'static str, Option<Program>)>;
 
-/// The programs of a step. Constants that only other programs read, as those of derivatives, are left out.
-pub(crate) fn emitted(step: &WholeStep) -> Emitted {
+/// The programs of a step, `newton` the system for a solve with care, and more of its programs. Constants that none of them
+/// reads, as those of derivatives, are left out, and those that only the additional programs read come last.
+pub(crate) fn emitted(step: &WholeStep, more: &[(&'static str, &Program)]) -> Emitted {
     let all = &step.programs;
     let others = [
         ("target", Some(&all.target)),
@@ -23,15 +24,23 @@ pub(crate) fn emitted(step: &WholeStep) -> Emitted {
         ("rest", Some(&all.rest)),
         ("newton", Some(&all.newton)),
     ];
+    let more: Vec<_> = more.iter().map(|&(name, program)| (name, Some(program))).collect();
     let mut places = BTreeMap::new();
-    let inputs = others.iter().filter_map(|(_, program)| *program).flat_map(|program| &program.inputs);
-    places.extend(inputs.filter(|source| source.array == Array::Constants).map(|source| (source.at, 0)));
-    for (place, (_, at)) in places.iter_mut().enumerate() {
-        *at = place;
+    for programs in [&others[..], &more[..]] {
+        let inputs = programs.iter().filter_map(|(_, program)| *program).flat_map(|program| &program.inputs);
+        let mut read: Vec<usize> =
+            inputs.filter(|source| source.array == Array::Constants).map(|source| source.at).collect();
+        read.sort_unstable();
+        for at in read {
+            let next = places.len();
+            places.entry(at).or_insert(next);
+        }
     }
     let mut words = Words::default();
     let constants = words.append(&all.constants, Value::Input);
-    let read: Vec<Value> = places.keys().map(|&at| constants[at]).collect();
+    let mut read: Vec<(usize, usize)> = places.iter().map(|(&at, &place)| (place, at)).collect();
+    read.sort_unstable();
+    let read: Vec<Value> = read.into_iter().map(|(_, at)| constants[at]).collect();
     let moved = |program: &Program| {
         let inputs = program.inputs.iter().map(|&source| match source.array {
             Array::Constants => Source::new(Array::Constants, places[&source.at]),
@@ -39,7 +48,7 @@ pub(crate) fn emitted(step: &WholeStep) -> Emitted {
         });
         Program { inputs: inputs.collect(), ..program.clone() }
     };
-    let others = others.into_iter().map(|(name, program)| (name, program.map(moved)));
+    let others = others.into_iter().chain(more).map(|(name, program)| (name, program.map(moved)));
     [("constants", Some(words.program(&read)))].into_iter().chain(others).collect()
 }
 

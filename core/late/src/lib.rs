@@ -31,4 +31,4 @@ pub use whole::{
     BackendInLanes, Between, Course, Paced, Question, QuestionError, Signal, SignalError, Transition, Varied, Whole,
     WholeError, for_accuracy, stepper,
 };
-pub use written::{c, rust};
+pub use written::{c, constant, gpu, header, is_exact, javascript, prefix, rust};

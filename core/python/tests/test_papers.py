@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 
@@ -87,14 +88,14 @@ MAIN = """
 #include <stdio.h>
 int main(void) {{
     static const double p[] = {{{parameters}}}, r[] = {{{attitude}}}, m[] = {{{momentum}}}, v[] = {{{velocity}}};
-    Stepper stepper;
-    State state;
-    if (!liestep_make(&stepper, p, {h})) return 1;
-    liestep_start(&stepper, &state, r, m, v);
+    {of}_stepper stepper;
+    {of}_state state;
+    if (!{of}_make(&stepper, p, {h})) return 1;
+    {of}_start(&stepper, &state, r, m, v);
     for (int i = 0; i < {steps}; i++)
-        if (!liestep_step(&stepper, &state)) return 2;
-    for (int i = 0; i < N; i++) printf("%.17g ", state.momentum[i]);
-    for (int i = 0; i < ENTRIES; i++) printf("%.17g ", state.attitude[i]);
+        if (!{of}_step(&stepper, &state)) return 2;
+    for (int i = 0; i < (int)(sizeof m / sizeof *m); i++) printf("%.17g ", state.momentum[i]);
+    for (int i = 0; i < (int)(sizeof r / sizeof *r); i++) printf("%.17g ", state.attitude[i]);
     return 0;
 }}
 """
@@ -115,7 +116,7 @@ def in_c(tmp_path):
         first, last = (np.ravel(matrices(run)[at]) for at in (0, -1))
         text = term.c + MAIN.format(
             parameters=written(term.numbers), attitude=written(first), momentum=written(run.momentum[0]),
-            velocity=written(run.velocity[0]), h=repr(h), steps=steps,
+            velocity=written(run.velocity[0]), h=repr(h), steps=steps, of=re.search(r"(\w+)_make\(", term.c)[1],
         )
         (tmp_path / "step.c").write_text(text)
         flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"]

@@ -54,12 +54,17 @@ J = { tensor = [[2, 0.1, 0], [0.1, 3, 0], [0, 0, 4]] }
     assert!(printed(&folder, &["ensemble", "drawn.toml", "--out", "."]).contains('4'));
     assert!(printed(&folder, &["derive", "drawn.toml"]).contains("(R_F)* δl_d/δF = (1/h) (F J_d − J_d Fᵀ)^∨"));
     let written = |form: &str, part: &str| {
-        let (text, of_effect) = (printed(&folder, &["derive", "drawn.toml", form]), ["derive", "principal-body", form]);
-        assert!(text.contains(part) && printed(&folder, &of_effect).contains(part), "{form}: {text}");
+        for (of, name) in [("drawn.toml", "lagrangian"), ("principal-body", "principal_body")] {
+            let text = printed(&folder, &["derive", of, form]);
+            assert!(text.contains(&part.replace("NAME", name)), "{form}: {text}");
+        }
     };
     written("--latex", r"\begin{align*}");
     written("--rust", "pub fn newton_system(constants: &[f64]");
-    written("--c", "int liestep_step(const Stepper *stepper, State *state) {");
+    written("--c", "int NAME_step(const NAME_stepper *stepper, NAME_state *state) {");
+    written("--header", "int NAME_step(const NAME_stepper *stepper, NAME_state *state);");
+    written("--gpu", "LIESTEP_KERNEL NAME_run(");
+    written("--js", "function step(stepper, state) {");
 }
 
 /// A force in a file agrees with the library's torque, beside a body and beside a Lagrangian; an ensemble draws its

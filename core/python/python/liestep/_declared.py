@@ -256,7 +256,7 @@ class Sum:
     def c(self) -> str:
         """A step of the sum as C99 without dependencies: the bits of `Term.stepper`'s own step, where contraction is off.
 
-        Its head says the order of the parameters, and what the functions do.
+        Its head says the order of the parameters, and what the functions do; all names begin with that of the sum.
 
         Raises
         ------
@@ -266,7 +266,7 @@ class Sum:
         Examples
         --------
         >>> import liestep as ls
-        >>> "int liestep_step(const Stepper *stepper, State *state)" in ls.body([1, 2, 2.5]).c
+        >>> "int principal_body_step(const principal_body_stepper *stepper, principal_body_state *state)" in ls.body([1, 2, 2.5]).c
         True
         """
         return self._scene().c

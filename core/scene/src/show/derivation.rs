@@ -56,6 +56,12 @@ pub enum Form {
     C,
     /// The step as data, with the claims that are to be checked.
     Certificate,
+    /// The declarations of the step in C99, for other units.
+    Header,
+    /// A step of many members in OpenCL C, CUDA and C99.
+    Gpu,
+    /// A step in JavaScript.
+    JavaScript,
 }
 
 impl Form {
@@ -65,6 +71,9 @@ impl Form {
             Self::Rust => Ok(liestep_late::rust(declaration)),
             Self::C => liestep_late::c(declaration),
             Self::Certificate => liestep_late::certificate(declaration),
+            Self::Header => liestep_late::header(declaration),
+            Self::Gpu => liestep_late::gpu(declaration),
+            Self::JavaScript => liestep_late::javascript(declaration),
         }
     }
 }

@@ -1,8 +1,8 @@
 
 /* The Stumpff function c_k(q) = sum of (-q)^i / (2i + k)! for q >= 0, by its series where that is short. */
-static double stumpff(int k, const double *series, double q) {
-    if (q <= 0.5) return polynomial(series, 9, q);
-    if (q <= 12.0) return polynomial(series, 34, q);
+FUNCTION double $stumpff(int k, POINTER series, double q) {
+    if (q <= 0.5) return $polynomial(series, 9, q);
+    if (q <= 12.0) return $polynomial(series, 34, q);
     const double root = sqrt(q);
     double lower[2] = {cos(root), sin(root) / root}, reciprocal = 1.0;
     for (int i = 0; i < k - 1; i++) {

@@ -1,9 +1,10 @@
 //! Steps as text in other languages: compiled C makes the library's steps, and Rust is formatted as by rustfmt.
 
-use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+mod door;
+mod doors;
+
+use std::fs;
 use std::process::Command;
-use std::{env, fs};
 
 use declarations::{CayleyTop, DoublePendulum, Flyer, FullTop, LogTop, SixthOrderTop};
 use liestep::groups::{CayleyRetraction, LieGroup, Retraction, SE3, SE23};
@@ -16,24 +17,9 @@ use liestep_derivation::whole::StepRefusal;
 use liestep_late::{Declaration, LateError, c, latex, rust};
 use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, UnitQuaternion, Vector3};
 
-const STEP: f64 = 0.01;
+use door::{Course, Door, STEP, folder, is_there, row};
 
-fn folder(name: &str) -> PathBuf {
-    let folder = env::temp_dir().join(format!("liestep-written-{name}-{}", std::process::id()));
-    fs::create_dir_all(&folder).expect("a folder");
-    folder
-}
-
-/// Whether this program is installed; if it isn't, a reason is printed.
-fn is_there(program: &str) -> bool {
-    let found = Command::new(program).arg("--version").output().is_ok();
-    if !found {
-        println!("skipped: there is no `{program}`");
-    }
-    found
-}
-
-fn parsed(text: &str) -> &'static Declaration {
+pub(crate) fn parsed(text: &str) -> &'static Declaration {
     Declaration::parse(text).expect("a declaration")
 }
 
@@ -65,87 +51,46 @@ struct TurnedTop {
     up: Vector3<f64>,
 }
 
-fn list(numbers: impl IntoIterator<Item = f64>) -> String {
-    let numbers: Vec<String> = numbers.into_iter().map(|number| format!("{number:?}")).collect();
-    format!("{{{}}}", numbers.join(", "))
-}
-
-/// The output of the compiled program: the bits of momentum and attitude after each hundredth step, by a composition of stages
-/// of these lengths, or of one.
-fn by_c(
-    text: &str,
-    folder: &Path,
-    (steps, gammas): (u32, &[f64]),
-    [parameters, attitude, momentum, velocity]: [String; 4],
-) -> Option<String> {
-    let (count, lengths) = (gammas.len(), list(gammas.iter().copied()));
-    let step = if count == 1 { "liestep_step(stages, &state)" } else { "liestep_compose(stages, g, COUNT, &state)" };
-    let main = format!(
-        "{text}\n#include <stdio.h>\n#include <string.h>\n#include <stdint.h>\n\
-         static void print(const double *numbers, int count) {{\n    for (int i = 0; i < count; i++) {{\n        \
-         uint64_t bits;\n        memcpy(&bits, numbers + i, 8);\n        printf(\"%016llx \", (unsigned long long)bits);\n    }}\n}}\n\
-         int main(void) {{\n    const double p[] = {parameters}, r[] = {attitude}, m[] = {momentum}, v[] = {velocity};\n    \
-         const double g[] = {lengths};\n    enum {{ COUNT = {count} }};\n    Stepper stages[COUNT];\n    State state;\n    \
-         for (int k = 0; k < COUNT; k++) if (!liestep_make(stages + k, p, {STEP:?} * g[k])) return 1;\n    \
-         liestep_start(stages, &state, r, m, v);\n    for (int i = 1; i <= {steps}; i++) {{\n        \
-         if (!{step}) return 2;\n        if (i % 100) continue;\n        \
-         print(state.momentum, N);\n        print(state.attitude, ENTRIES);\n        puts(\"\");\n    }}\n    \
-         return liestep_defect(&state) > 1e-9;\n}}\n"
-    );
-    fs::write(folder.join("step.c"), main).expect("a file");
-    let flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off", "step.c", "-o", "step", "-lm"];
-    let compiled = Command::new("cc").args(flags).current_dir(folder).output().expect("a compiler");
-    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
-    let run = Command::new(folder.join("step")).output().expect("a program");
-    run.status.success().then(|| String::from_utf8(run.stdout).expect("a text"))
-}
-
 fn entries<V: Entries<f64>>(value: &V) -> Vec<f64> {
     let mut all = Vec::new();
     value.each(&mut |entry| all.push(entry));
     all
 }
 
-/// Whether all steps by this C are made, and have the bits of the library's.
-fn has_the_bits_of<E>(effect: &E, attitude: E::Group, velocity: &[f64], steps: u32, text: &str) -> bool
+/// Whether all steps by this text are made, and have the bits of the library's.
+fn has_the_bits_of<E>(effect: &E, attitude: E::Group, velocity: &[f64], steps: u32, written: (Door, &str)) -> bool
 where
     E: Regular<Scalar = f64> + Clone,
 {
     let stepper = Stepper::new(effect.clone(), STEP).expect("a stepper");
-    has_the_bits_of_a_method(effect, &stepper, (attitude, velocity), (steps, &[1.0]), text)
+    has_the_bits_of_a_method(effect, &stepper, (attitude, velocity), (steps, &[1.0]), written)
 }
 
-/// Whether all steps by this C, by stages of these lengths, are made, and have the bits of this stepper's.
+/// Whether all steps by this text, by stages of these lengths, are made, and have the bits of this stepper's.
 fn has_the_bits_of_a_method<E, P>(
     effect: &E,
     stepper: &Stepper<E, P>,
     (attitude, velocity): (E::Group, &[f64]),
-    (steps, gammas): (u32, &[f64]),
-    text: &str,
+    course: Course<'_>,
+    (door, text): (Door, &str),
 ) -> bool
 where
     E: Regular<Scalar = f64> + Clone,
     P: Plan<E>,
 {
-    let folder = folder(&format!("{}-{}", parsed(E::DECLARATION).name, gammas.len()));
+    let folder = folder(&format!("{}-{door:?}-{}", parsed(E::DECLARATION).name, course.1.len()));
     let mut at = velocity.iter();
     let velocity = Entries::from_entries(&mut || at.next().copied().expect("a component"));
     let mut state = stepper.start(attitude, velocity).expect("a start");
-    let given = [
-        list(liestep_late::numbers(effect)),
-        list(entries(&state.attitude().matrix())),
-        list(entries(&state.momentum())),
-        list(entries(&stepper.velocity(&state))),
-    ];
-    let found = by_c(text, &folder, (steps, gammas), given);
+    let numbers = parsed(E::DECLARATION).described(&liestep_late::numbers(effect)).expect("numbers");
+    let [attitude, momentum] = [entries(&state.attitude().matrix()), entries(&state.momentum())];
+    let given = [&numbers[..], &attitude, &momentum, &entries(&stepper.velocity(&state))];
+    let found = door.rows((parsed(E::DECLARATION), text), &folder, course, given);
     let mut expected = String::new();
-    for step in 1..=steps {
+    for step in 1..=course.0 {
         stepper.step(&mut state).expect("a step");
         if step % 100 == 0 {
-            for number in entries(&state.momentum()).into_iter().chain(entries(&state.attitude().matrix())) {
-                let _ = write!(expected, "{:016x} ", number.to_bits());
-            }
-            expected.push('\n');
+            expected += &row(entries(&state.momentum()).into_iter().chain(entries(&state.attitude().matrix())));
         }
     }
     fs::remove_dir_all(&folder).expect("the folder is there");
@@ -159,13 +104,13 @@ fn a_step_in_c_has_the_bits_of_the_library() {
     }
     let has_the_bits = |text: &str| {
         let attitude = SO3::exp(Vector3::new(0.3, -0.5, 0.2));
-        has_the_bits_of(&top(), attitude, &[0.7, -1.1, 4.0], 10_000, text)
+        has_the_bits_of(&top(), attitude, &[0.7, -1.1, 4.0], 10_000, (Door::C, text))
     };
     let text = c(parsed(FullTop::DECLARATION)).expect("a step in C");
     assert!(has_the_bits(&text));
     // A single wrong operation is detected.
-    let (before, after) = text.split_once("static void again").expect("a program");
-    assert!(!has_the_bits(&format!("{before}static void again{}", after.replacen(" - ", " + ", 1))));
+    let (before, after) = text.split_once("void full_top_again").expect("a program");
+    assert!(!has_the_bits(&format!("{before}void full_top_again{}", after.replacen(" - ", " + ", 1))));
 }
 
 #[test]
@@ -178,7 +123,7 @@ fn a_composition_in_c_has_the_bits_of_the_library() {
     let bits = |scheme: CompositionScheme, text: &str| {
         let stepper = Stepper::composed(top(), STEP, scheme).expect("a stepper");
         let gammas: Vec<f64> = scheme.stages().collect();
-        has_the_bits_of_a_method(&top(), &stepper, start, (2_000, &gammas), text)
+        has_the_bits_of_a_method(&top(), &stepper, start, (2_000, &gammas), (Door::C, text))
     };
     assert!(bits(CompositionScheme::SUZUKI_4, &text) && bits(CompositionScheme::KAHAN_LI_8, &text));
     let wrong = text.replace("earlier[i] * factor", "earlier[i] * -factor");
@@ -193,7 +138,7 @@ fn so_has_one_of_two_bodies() {
     let attitude = (SO3::exp(Vector3::new(0.3, -0.5, 0.2)), SO3::exp(Vector3::new(-0.2, 0.3, 0.1)));
     let velocity = [0.5, -0.8, 1.2, -0.3, 0.9, 0.4];
     let text = c(parsed(DoublePendulum::<f64>::DECLARATION)).expect("a step in C");
-    assert!(has_the_bits_of(&DoublePendulum::asymmetric(), attitude, &velocity, 1_000, &text));
+    assert!(has_the_bits_of(&DoublePendulum::asymmetric(), attitude, &velocity, 1_000, (Door::C, &text)));
 }
 
 #[test]
@@ -205,7 +150,7 @@ fn so_has_one_of_rigid_motions() {
     let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -0.2, 0.1));
     let attitude = SE3::from_rotation_and_translation(turn, Vector3::new(0.1, 0.2, 0.5));
     let text = c(parsed(Flyer::DECLARATION)).expect("a step in C");
-    assert!(has_the_bits_of(&Flyer { J }, attitude, &[0.5, -0.8, 1.2, 0.3, 0.2, -0.4], 1_000, &text));
+    assert!(has_the_bits_of(&Flyer { J }, attitude, &[0.5, -0.8, 1.2, 0.3, 0.2, -0.4], 1_000, (Door::C, &text)));
 }
 
 /// The inverse of five rows is that by LU, in the library's order.
@@ -219,7 +164,7 @@ fn so_has_one_of_five_rows() {
     let attitude = <CayleyRetraction as Retraction<SE23>>::retract(&turn);
     let text = c(parsed(ExtendedPose::DECLARATION)).expect("a step in C");
     let velocity = [0.25, -0.4, 0.6, 0.15, 0.1, -0.2, 0.05, 0.3, -0.1];
-    assert!(has_the_bits_of(&ExtendedPose { J }, attitude, &velocity, 1_000, &text));
+    assert!(has_the_bits_of(&ExtendedPose { J }, attitude, &velocity, 1_000, (Door::C, &text)));
 }
 
 #[test]
@@ -244,12 +189,12 @@ fn so_have_logarithms_and_exponentials() {
     // Steps of .1, .8 and 1.5 rad: short, longer and closed forms.
     for faster in [1.0, 8.0, 15.0] {
         let velocity = [2.0 * faster, 4.0 * faster, 9.0 * faster];
-        assert!(has_the_bits_of(&log, attitude, &velocity, 1_000, &text), "{faster}");
+        assert!(has_the_bits_of(&log, attitude, &velocity, 1_000, (Door::C, &text)), "{faster}");
     }
     // Thirty thousand operations.
     let sixth = SixthOrderTop { J, weight: 15.0, rho: Vector3::new(0.1, -0.2, 0.4), up: Vector3::z() };
     let text = c(parsed(SixthOrderTop::DECLARATION)).expect("a step in C");
-    assert!(has_the_bits_of(&sixth, attitude, &[0.7, -1.1, 4.0], 200, &text));
+    assert!(has_the_bits_of(&sixth, attitude, &[0.7, -1.1, 4.0], 200, (Door::C, &text)));
     let text = c(parsed(TurnedTop::DECLARATION)).expect("a step in C");
     let turned = |length: f64| {
         let (v, J_d) = (Vector3::new(0.6, -0.48, 0.64) * length, *top().J_d.as_matrix());
@@ -258,10 +203,10 @@ fn so_have_logarithms_and_exponentials() {
     };
     // Squares of 0.25, 4 and 16.
     for length in [0.5, 2.0, 4.0] {
-        assert!(has_the_bits_of(&turned(length), attitude, &[0.7, -1.1, 4.0], 1_000, &text), "{length}");
+        assert!(has_the_bits_of(&turned(length), attitude, &[0.7, -1.1, 4.0], 1_000, (Door::C, &text)), "{length}");
     }
     let wrong = text.replace("(reciprocal - lower[i % 2]) / q", "(reciprocal + lower[i % 2]) / q");
-    assert!(!has_the_bits_of(&turned(4.0), attitude, &[0.7, -1.1, 4.0], 1_000, &wrong));
+    assert!(!has_the_bits_of(&turned(4.0), attitude, &[0.7, -1.1, 4.0], 1_000, (Door::C, &wrong)));
 }
 
 /// Rust text is formatted, and complete.

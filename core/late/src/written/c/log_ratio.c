@@ -1,9 +1,9 @@
 
 /* The k-th derivative of G(n) = a / sin a, n = sin(a/2)^2, for 0 <= n < 1, by its series where that is short. */
-static double log_ratio(int k, const double *series, double n) {
-    if (n <= 0.015) return polynomial(series, 9, n);
-    if (n <= 0.12) return polynomial(series, 20, n);
-    if (n <= 0.25) return polynomial(series, 34, n);
+FUNCTION double $log_ratio(int k, POINTER series, double n) {
+    if (n <= 0.015) return $polynomial(series, 9, n);
+    if (n <= 0.12) return $polynomial(series, 20, n);
+    if (n <= 0.25) return $polynomial(series, 34, n);
     const double slope = 1.0 - 2.0 * n, twice = 2.0 * n * (1.0 - n);
     double lower = asin(sqrt(n)) / sqrt(n * (1.0 - n)), value;
     if (k == 0) return lower;

@@ -1,0 +1,16 @@
+//! Programs as text: the straight-line code in Rust, and a whole step in other languages.
+//!
+//! A language is a table, of its straight-line code, and a head with a driver: Newton's iteration, its end, and the
+//! step that follows. Both have the decisions of the whole step by interpretation, in the same order.
+//!
+//! `{rust, c, javascript} → parts → language`.
+
+mod c;
+mod javascript;
+mod language;
+mod parts;
+mod rust;
+
+pub use c::{c, gpu, header, prefix};
+pub use javascript::{constant, is_exact, javascript};
+pub use rust::rust;

@@ -1,0 +1,98 @@
+//! What a whole step is written from, in any language.
+
+use liestep::__private::{log_ratio_series, stumpff_series};
+use liestep_derivation::whole::{MatrixFactor, Programs, WholeStep};
+use liestep_derivation::{Function, Program};
+
+use super::language::own_functions;
+use crate::declaration::Declaration;
+use crate::emitted::{Emitted, emitted};
+use crate::error::LateError;
+
+/// A step with the declaration that it is of.
+pub(super) struct Parts<'a> {
+    pub(super) declaration: &'a Declaration,
+    pub(super) step: WholeStep,
+    programs: Emitted,
+}
+
+impl<'a> Parts<'a> {
+    pub(super) fn of(declaration: &'a Declaration) -> Result<Self, LateError> {
+        let step = WholeStep::of(declaration)?;
+        let Programs { velocity, momentum, energy, .. } = &step.programs;
+        let limit = [("velocity_of", velocity), ("momentum_of", momentum), ("energy_of", energy)];
+        let mut programs = emitted(&step, if has_limit(&step) { &limit } else { &[] });
+        // A text refuses steps that take special care.
+        programs.retain(|(name, _)| *name != "newton");
+        for (name, _) in &mut programs {
+            // A driver has a variable of this name.
+            if *name == "defect" {
+                *name = "defect_of";
+            }
+        }
+        Ok(Self { declaration, step, programs })
+    }
+
+    /// Whether the velocity of a momentum and the energy are programs: where the continuous limit is quadratic.
+    pub(super) const fn has_limit(&self) -> bool {
+        has_limit(&self.step)
+    }
+
+    /// The programs that a step calls, by the names of their functions; those that a declaration lacks are empty.
+    pub(super) fn programs(&self) -> impl Iterator<Item = (&'static str, Option<&Program>)> {
+        self.programs.iter().map(|(name, program)| (*name, program.as_ref()))
+    }
+
+    /// The number of outputs of a program, at least one, as no language has an array of none.
+    fn outputs(&self, name: &str) -> usize {
+        let program = self.programs().find(|(found, _)| *found == name).and_then(|(_, program)| program);
+        program.map_or(0, |program| program.outputs.len()).max(1)
+    }
+
+    /// The sizes of arrays, by their names.
+    pub(super) fn sizes(&self) -> Vec<(&'static str, usize)> {
+        let WholeStep { sizes, programs, factors } = &self.step;
+        let parameters: usize = self.declaration.parameters.iter().map(|parameter| parameter.kind.len()).sum();
+        vec![
+            ("PARAMETERS", parameters.max(1)),
+            ("CONSTANTS", self.outputs("constants")),
+            ("ENTRIES", sizes.entries),
+            ("N", sizes.n),
+            ("CARRIED", sizes.carried),
+            ("ADVECTED", sizes.carried.max(1)),
+            ("DETS", sizes.dets),
+            ("NEAR", sizes.near),
+            ("ATTITUDES", sizes.attitudes),
+            ("RESTORED", self.outputs("restored")),
+            ("IS_WHOLE", usize::from(factors.len() == 1)),
+            ("VARIES", usize::from(programs.safe.is_some())),
+        ]
+    }
+
+    /// A number of each factor that is restored.
+    pub(super) fn restored(&self, number: fn(&MatrixFactor) -> usize) -> Vec<String> {
+        let restored = self.step.factors.iter().filter(|factor| factor.is_restored());
+        restored.map(|factor| number(factor).to_string()).collect()
+    }
+
+    /// The functions of the exponential and the logarithm that the programs have, by their names and orders, with the
+    /// coefficients of their series.
+    pub(super) fn series(&self) -> Vec<(&'static str, u8, String)> {
+        let mut used: Vec<Function> =
+            self.programs().filter_map(|(_, program)| program).flat_map(own_functions).collect();
+        used.sort_unstable();
+        used.dedup();
+        let listed = |series: &[f64]| series.iter().map(|one| format!("{one:?}")).collect::<Vec<_>>().join(", ");
+        let series = used.into_iter().filter_map(|function| match function {
+            Function::Stumpff(k) => Some(("stumpff", k, listed(&stumpff_series(k.into())))),
+            Function::LogRatio(k) => Some(("log_ratio", k, listed(&log_ratio_series(k.into())))),
+            _ => None,
+        });
+        series.collect()
+    }
+}
+
+/// Whether the continuous limit is quadratic: only then the velocity of a momentum is a program.
+const fn has_limit(step: &WholeStep) -> bool {
+    step.programs.hessian.is_none()
+}
