@@ -3,6 +3,8 @@
 
 #[path = "common/same.rs"]
 mod same;
+#[path = "common/slopes.rs"]
+mod slopes;
 
 use declarations::{
     Alike, CayleyTop, ContinuousTop, DoublePendulum, ElasticFlow, FallingBody, FloatingBody, FluidDrag, Flyer,
