@@ -121,7 +121,7 @@ def begin(name):
 
 
 @pytest.mark.parametrize("name", others())
-@pytest.mark.parametrize("method", [{}, {"composition": "Yoshida 4"}])
+@pytest.mark.parametrize("method", [{}, {"composition": "Kahan-Li 6"}])
 def test_gradients_off_so3(name, method):
     term, velocity, some = others()[name]
 

@@ -162,7 +162,7 @@ impl<B: Backend<f64>> Derivatives<B> {
         if are_finite(columns.as_slice()) { Ok(columns.as_slice().to_vec()) } else { Err(UNKNOWN) }
     }
 
-    /// The Lyapunov exponents over so many steps, 1/s, in approximately descending order: one for each of the `2n` components
+    /// The Lyapunov exponents over so many steps, 1/s, in descending order: one for each of the `2n` components
     /// of displacement and momentum. The columns are orthonormalised every `between` steps.
     ///
     /// Those of a motion without forces come in pairs `±λ`.
@@ -189,7 +189,9 @@ impl<B: Backend<f64>> Derivatives<B> {
             numbers.copy_from_slice(q.as_slice());
         })?;
         let time = self.varied.time_of(steps);
-        let exponents: Vec<f64> = sums.iter().map(|sum| sum / time).collect();
+        let mut exponents: Vec<f64> = sums.iter().map(|sum| sum / time).collect();
+        // Columns that a symmetry keeps apart stay in the order of the components.
+        exponents.sort_by(|a, b| b.total_cmp(a));
         if are_finite(&exponents) { Ok(exponents) } else { Err(StepError::NonFinite { what: "Lyapunov exponent" }) }
     }
 

@@ -216,7 +216,7 @@ class Differentiable:
         return self._known().transition(self.steps, None)
 
     def lyapunov(self: Run, between: int = 10) -> Array:
-        """The Lyapunov exponents over the run, 1/s, about in falling order: two for each component of a velocity.
+        """The Lyapunov exponents over the run, 1/s, in falling order: two for each component of a velocity.
 
         Parameters
         ----------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from ._declared import Sum
@@ -60,36 +61,23 @@ def jax(
     try:
         import jax as _jax
         import jax.numpy as jnp
-        from jax.custom_derivatives import linear_call
     except ImportError as error:
         raise SetupError("`ls.jax` needs JAX, which isn't installed: `pip install jax`") from error
-    import numpy as np
 
+    along = _tangent()
     traced = Traced(term, step, attitude, {"until": until, "every": every, "times": times}, method)
-
-    def plain(tree: Any) -> dict[str, Any]:
-        return {name: np.asarray(value, dtype=float) for name, value in tree.items()}
-
-    def shaped(tree: Any) -> Any:
-        return {name: np.asarray(value, dtype=np.dtype(jnp.result_type(float))) for name, value in tree.items()}
-
-    def called(function: Callable[..., Any], like: Any, *trees: Any) -> Any:
-        kind = jnp.result_type(float)
-        shapes = {name: _jax.ShapeDtypeStruct(shape, kind) for name, shape in like.items()}
-        host = lambda *trees: shaped(function(*map(plain, trees)))  # noqa: E731
-        return _jax.pure_callback(host, shapes, *trees, vmap_method="sequential")
+    read = tuple(traced.outputs)
 
     @_jax.custom_jvp
     def motion(given: Any) -> Any:
-        return called(traced.run, traced.outputs, given)
+        return _called(traced.run, traced.outputs, given)
 
     @motion.defjvp
     def _(primals: Any, tangents: Any) -> Any:
         (given,), (change,) = primals, tangents
-        inputs = {name: jnp.shape(value) for name, value in given.items()}
-        along = lambda given, change: called(traced.along, traced.outputs, given, change)  # noqa: E731
-        back = lambda given, by: called(traced.back, inputs, given, by)  # noqa: E731
-        return motion(given), linear_call(along, back, given, change)
+        names = tuple(given)
+        made = along.bind(*given.values(), *(change[name] for name in names), traced=traced, names=names)
+        return motion(given), dict(zip(read, made, strict=True))
 
     def function(velocity: Any, turn: Any = None, **parameters: Any) -> dict[str, Any]:
         kind = jnp.result_type(float)
@@ -98,3 +86,63 @@ def jax(
         return result
 
     return function
+
+
+def _called(function: Callable[..., Any], shapes: dict[str, tuple[int, ...]], *trees: Any) -> Any:
+    """A function of dictionaries of arrays, called outside of JAX."""
+    import jax as _jax
+    import jax.numpy as jnp
+    import numpy as np
+
+    kind = jnp.result_type(float)
+
+    def host(*trees: Any) -> Any:
+        plain = [{name: np.asarray(value, dtype=float) for name, value in tree.items()} for tree in trees]
+        return {name: np.asarray(value, dtype=np.dtype(kind)) for name, value in function(*plain).items()}
+
+    like = {name: _jax.ShapeDtypeStruct(shape, kind) for name, shape in shapes.items()}
+    return _jax.pure_callback(host, like, *trees, vmap_method="sequential")
+
+
+@cache
+def _tangent() -> Any:
+    """The tangent map of a motion as an operation of JAX, which is linear in the second half of its arguments: its transpose
+    is `Traced.back`."""
+    import jax as _jax
+    import jax.numpy as jnp
+    from jax.extend.core import Primitive
+    from jax.interpreters import ad, batching, mlir
+
+    along = Primitive("liestep_tangent")
+    along.multiple_results = True
+
+    def made(*arrays: Any, traced: Traced, names: tuple[str, ...]) -> list[Any]:
+        given, change = (dict(zip(names, part, strict=True)) for part in (arrays[: len(names)], arrays[len(names) :]))
+        found = _called(traced.along, traced.outputs, given, change)
+        return [found[name] for name in traced.outputs]
+
+    def shaped(*_: Any, traced: Traced, names: tuple[str, ...]) -> list[Any]:
+        return [_jax.core.ShapedArray(shape, jnp.result_type(float)) for shape in traced.outputs.values()]
+
+    def transposed(by: Any, *arrays: Any, traced: Traced, names: tuple[str, ...]) -> list[Any]:
+        given = dict(zip(names, arrays[: len(names)], strict=True))
+        full = dict(zip(traced.outputs, map(ad.instantiate_zeros, by), strict=True))
+        found = _called(traced.back, {name: jnp.shape(value) for name, value in given.items()}, given, full)
+        slopes = zip(names, arrays[len(names) :], strict=True)
+        return [None] * len(names) + [found[name] if ad.is_undefined_primal(one) else None for name, one in slopes]
+
+    def batched(arrays: Any, axes: Any, **rest: Any) -> Any:
+        size = next(array.shape[axis] for array, axis in zip(arrays, axes, strict=True) if axis is not batching.not_mapped)
+        rows = [
+            jnp.broadcast_to(array, (size, *jnp.shape(array))) if axis is batching.not_mapped else jnp.moveaxis(array, axis, 0)
+            for array, axis in zip(arrays, axes, strict=True)
+        ]
+        found = _jax.lax.map(lambda one: along.bind(*one, **rest), rows)
+        return found, [0] * len(found)
+
+    along.def_impl(made)
+    along.def_abstract_eval(shaped)
+    ad.primitive_transposes[along] = transposed
+    batching.primitive_batchers[along] = batched
+    mlir.register_lowering(along, mlir.lower_fun(made, multiple_results=True))
+    return along
