@@ -70,7 +70,7 @@ def weights(run, **shapes):
 def test_gradients_on_so3(name, method):
     term = tops()[name]
     if method and not term.stepper(0.05)._native.is_self_adjoint:
-        pytest.skip(f"{name} has a drag, which isn't the same backwards: no composition")
+        pytest.skip(f"{name} isn't the same backwards: no composition")
     times = [0.1, 0.37, 0.5]
 
     def run(term, velocity=(0.3, 1.0, -0.5), turn=(0, 0, 0)):
@@ -124,6 +124,8 @@ def begin(name):
 @pytest.mark.parametrize("method", [{}, {"composition": "Kahan-Li 6"}])
 def test_gradients_off_so3(name, method):
     term, velocity, some = others()[name]
+    if method and not term.stepper(0.05)._native.is_self_adjoint:
+        pytest.skip(f"{name} isn't the same backwards: no composition")
 
     def run(term, velocity):
         return term.stepper(0.05, **method).run(velocity=velocity, attitude=begin(name), times=[0.1, 0.32, 0.5])

@@ -78,11 +78,10 @@ class Gradient:
         return self._by(places[name])
 
     def _by(self, places: list[tuple[int, int]]) -> Any:
-        value, total = self._term._value(places[0]), 0.0
-        for place in places:
-            first = self._term._first_number(place)
-            total = total + self._numbers[first : first + len(value.numbers)]
-        return _shaped(value.kind, tuple(total.tolist()))  # type: ignore[attr-defined]
+        value = self._term._value(places[0])
+        begins = map(self._term._first_number, places)
+        lists = [self._numbers[first : first + len(value.numbers)] for first in begins]
+        return _shaped(value.kind, tuple(sum(lists[1:], lists[0]).tolist()))
 
     @property
     def parameters(self) -> dict[str, Any]:
@@ -109,7 +108,7 @@ class Origin:
             return False
         return True
 
-    def gradient(self, run: Run, given: dict[str, Any]) -> Gradient:
+    def gradient(self, run: Any, given: dict[str, Any]) -> Gradient:
         """The gradient of a scalar by whose derivatives these columns are given."""
         by = Covectors()
         for name, value in given.items():
@@ -141,9 +140,10 @@ class Differentiable:
     """A run with derivatives."""
 
     _origin: Origin | None = None
+    steps: int
 
     def gradient(
-        self: Run,
+        self,
         *,
         velocity: Any = None,
         momentum: Any = None,
@@ -200,7 +200,7 @@ class Differentiable:
         }
         return self._known().gradient(self, given)
 
-    def transition(self: Run) -> Array:
+    def transition(self) -> Array:
         """The state transition matrix of the run: the derivatives of its end by its start.
 
         Rows and columns are those of a turn about the axes of the body, rad, and of the body momentum; off SO(3) those of the
@@ -215,7 +215,7 @@ class Differentiable:
         """
         return self._known().transition(self.steps, None)
 
-    def lyapunov(self: Run, between: int = 10) -> Array:
+    def lyapunov(self, between: int = 10) -> Array:
         """The Lyapunov exponents over the run, 1/s, in falling order: two for each component of a velocity.
 
         Parameters

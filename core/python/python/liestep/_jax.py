@@ -68,16 +68,15 @@ def jax(
     traced = Traced(term, step, attitude, {"until": until, "every": every, "times": times}, method)
     read = tuple(traced.outputs)
 
-    @_jax.custom_jvp
-    def motion(given: Any) -> Any:
-        return _called(traced.run, traced.outputs, given)
+    motion = _jax.custom_jvp(lambda given: _called(traced.run, traced.outputs, given))
 
-    @motion.defjvp
-    def _(primals: Any, tangents: Any) -> Any:
+    def changed(primals: Any, tangents: Any) -> Any:
         (given,), (change,) = primals, tangents
         names = tuple(given)
         made = along.bind(*given.values(), *(change[name] for name in names), traced=traced, names=names)
         return motion(given), dict(zip(read, made, strict=True))
+
+    motion.defjvp(changed)
 
     def function(velocity: Any, turn: Any = None, **parameters: Any) -> dict[str, Any]:
         kind = jnp.result_type(float)
@@ -132,9 +131,9 @@ def _tangent() -> Any:
         return [None] * len(names) + [found[name] if ad.is_undefined_primal(one) else None for name, one in slopes]
 
     def batched(arrays: Any, axes: Any, **rest: Any) -> Any:
-        size = next(array.shape[axis] for array, axis in zip(arrays, axes, strict=True) if axis is not batching.not_mapped)
+        size = next(array.shape[axis] for array, axis in zip(arrays, axes, strict=True) if axis is not None)
         rows = [
-            jnp.broadcast_to(array, (size, *jnp.shape(array))) if axis is batching.not_mapped else jnp.moveaxis(array, axis, 0)
+            jnp.broadcast_to(array, (size, *jnp.shape(array))) if axis is None else jnp.moveaxis(array, axis, 0)
             for array, axis in zip(arrays, axes, strict=True)
         ]
         found = _jax.lax.map(lambda one: along.bind(*one, **rest), rows)

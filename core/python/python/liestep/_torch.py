@@ -51,7 +51,7 @@ def torch(
     def tensors(found: Any, names: Any) -> tuple[Any, ...]:
         return tuple(_torch.from_numpy(found[name].copy()) for name in names)
 
-    class Made(_torch.autograd.Function):  # type: ignore[misc]
+    class Motion(_torch.autograd.Function):  # type: ignore[misc]
         @staticmethod
         def forward(ctx: Any, names: Any, *given: Any) -> Any:
             ctx.names, ctx.kinds = names, [one.dtype for one in given]
@@ -60,7 +60,6 @@ def torch(
             return tensors(traced.run(plain(names, given)), read)
 
         @staticmethod
-        @_torch.autograd.function.once_differentiable
         def backward(ctx: Any, *by: Any) -> Any:
             found = traced.back(plain(ctx.names, ctx.saved_tensors), plain(read, by))
             own = zip(tensors(found, ctx.names), ctx.kinds, strict=True)
@@ -75,7 +74,7 @@ def torch(
 
     def function(velocity: Any, turn: Any = None, **parameters: Any) -> dict[str, Any]:
         given = {"velocity": velocity, **({} if turn is None else {"turn": turn}), **parameters}
-        made = Made.apply(tuple(given), *(_torch.as_tensor(value, dtype=None) for value in given.values()))
+        made = Motion.apply(tuple(given), *(_torch.as_tensor(value) for value in given.values()))
         return dict(zip(read, made, strict=True))
 
     return function

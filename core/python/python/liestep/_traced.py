@@ -32,6 +32,8 @@ class Traced:
         self._attitude: list[float] = stepper.start(velocity=[0.0] * self.dimension, attitude=attitude)._native.attitude
         # A motion at rest has the rows, and what has none says so here.
         run = self._run({"velocity": floats("velocity", [0.0] * self.dimension, SetupError)})
+        # Methods without derivatives say so here, too.
+        run._known().transition(0, None)
         self.outputs = {name: value.shape for name, value in self._read(run).items()}
 
     def run(self, given: Mapping[str, Array]) -> dict[str, Array]:
