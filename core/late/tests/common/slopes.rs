@@ -168,7 +168,10 @@ pub(crate) fn assert_gradient(declaration: &'static Declaration, numbers: &[f64]
         // In a random motion near a collision differences themselves are no better.
         let tolerance = if size > 1e7 { 1e-6 } else { 1e-7 };
         let near = |found: f64, expected: f64, of: String| {
-            assert!((found - expected).abs() < tolerance * size, "{what}, by {of}: {found:e}, {expected:e} of {size:e}");
+            assert!(
+                (found - expected).abs() < tolerance * size,
+                "{what}, by {of}: {found:e}, {expected:e} of {size:e}"
+            );
         };
         for k in 0..n {
             near(by_velocity[k], motion.by_velocity(k), format!("velocity {k}"));
