@@ -26,6 +26,6 @@ pub use liestep_derivation::whole::Sizes;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use whole::{
     BackendInLanes, Between, Course, Derivatives, Direction, Gradient, Paced, Question, QuestionError, Reading, Row,
-    Signal, SignalError, Transition, Varied, Whole, WholeError, for_accuracy, stepper,
+    Signal, SignalError, Steered, Transition, Varied, Whole, WholeError, for_accuracy, stepper,
 };
 pub use written::{c, rust};

@@ -1,12 +1,13 @@
 //! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
 //!
-//! `lib → {control, gradient, picture, file → state} → scene → {signal → orbit, ensemble} → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
+//! `lib → {estimate → control, gradient, picture, file → state} → scene → {signal → orbit, ensemble} → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
 //! declares is stepped by any method, recorded into columns that `NumPy` and Arrow look at where they are, or drawn at random.
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
 
 mod control;
 mod ensemble;
+mod estimate;
 mod failure;
 mod file;
 mod gradient;
@@ -277,6 +278,14 @@ fn plan<'py>(py: Python<'py>, terms: Vec<Term<'py>>, task: Task) -> PyResult<Bou
     control::plan(py, &terms, &numbers, &task)
 }
 
+/// An estimate of the sum of these terms.
+#[pyfunction]
+#[pyo3(name = "estimate")]
+fn fitted<'py>(py: Python<'py>, terms: Vec<Term<'py>>, task: estimate::Task) -> PyResult<Bound<'py, PyDict>> {
+    let (terms, numbers) = apart(terms);
+    estimate::estimate(py, &terms, &numbers, &task)
+}
+
 /// The names of all schemes, by the kind of the method.
 #[pyfunction]
 fn schemes() -> Vec<(&'static str, Vec<&'static str>)> {
@@ -298,7 +307,7 @@ fn share(text: &str) -> PyResult<(u64, u64)> {
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::{Along, Derivation, Orbit, Scene, Signal, State, Table, View, order, plan, schemes, share};
+    use super::{Along, Derivation, Orbit, Scene, Signal, State, Table, View, fitted, order, plan, schemes, share};
     #[pymodule_export]
     use crate::file::{File, FileRun, library, ratio};
     #[pymodule_export]

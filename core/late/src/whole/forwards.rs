@@ -150,6 +150,30 @@ impl<B: Backend<f64>> Derivatives<B> {
         }
     }
 
+    /// The columns of the derivatives after one step by the state before it and by some of the parameters' numbers, each of `2n`
+    /// numbers.
+    pub(super) fn of_step(&self, state: &[f64], places: &[usize]) -> Result<[Vec<f64>; 2], StepError> {
+        let (varied, sizes) = (&self.varied, &self.varied.whole.codes.sizes);
+        let start = varied.whole.checked(state)?;
+        let mut fresh = start.to_vec();
+        varied.whole.see(&mut fresh);
+        let time = start[start.len() - 1];
+        let mut room = self.roomy(&fresh)?;
+        let by_state = self.transition(&fresh, 1)?;
+        let mut by_parameters = Vec::with_capacity(2 * sizes.n * places.len());
+        for &place in places {
+            room.load(&fresh);
+            let mut along = vec![0.0; varied.whole.numbers().len()];
+            along[place] = 1.0;
+            let mut change = vec![0.0; 2 * sizes.n + sizes.carried];
+            self.see(varied.whole.numbers(), &fresh[..sizes.entries], &along, &mut change);
+            let span = [time * varied.step_size(), varied.step_size()];
+            Changes::of(self, &along).step(&mut room, span, &mut change)?;
+            by_parameters.extend_from_slice(&change[..2 * sizes.n]);
+        }
+        if are_finite(&by_parameters) { Ok([by_state, by_parameters]) } else { Err(UNKNOWN) }
+    }
+
     /// The state transition matrix over so many steps: the derivatives of displacement and momentum after them by those at
     /// the start, column by column, each of `2n` numbers.
     ///

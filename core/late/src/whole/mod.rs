@@ -18,7 +18,7 @@
 //!
 //! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
 //! `methods → {collocation, rotating, density}`, `collocation → stepper`,
-//! `{density, forwards → {derivatives → tape, tangent} → {varied → course, slopes → limit}, pace} → {stepper, lengths}`,
+//! `steered → {plant, forwards}`, `{density, forwards → {derivatives → tape, tangent} → {varied → course, slopes → limit}, pace} → {stepper, lengths}`,
 //! `inputs → {tangent → composed, limit}` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
 //! {codes, linear}`.
 
@@ -45,6 +45,7 @@ mod plant;
 mod rotating;
 mod signal;
 mod slopes;
+mod steered;
 mod step;
 mod stepper;
 mod tangent;
@@ -59,5 +60,6 @@ pub use inputs::Transition;
 pub use methods::{Question, QuestionError, for_accuracy, stepper};
 pub use pace::Paced;
 pub use signal::{Between, Signal, SignalError};
+pub use steered::Steered;
 pub use stepper::{Whole, WholeError};
 pub use varied::Varied;

@@ -84,7 +84,8 @@ fn transitions_are_products() {
         let made = whole.transition(&mut state, &[0.0]).expect("a step");
         product = nalgebra::Matrix2::from_column_slice(&made.by_state) * product;
     }
-    assert_eq!(found, product.as_slice(), "the same operations");
+    let apart = found.iter().zip(product.as_slice()).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
+    assert!(apart < 1e-13, "{apart:e}");
     assert!((product.determinant() - 1.0).abs() < 1e-13, "areas are conserved");
 }
 

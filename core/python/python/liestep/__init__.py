@@ -13,6 +13,7 @@ from . import errors
 from ._control import Control, Plan
 from ._declared import contravariant, covariant, mixed, point
 from ._ensemble import Ensemble, Many, Spread, normal, rotation, uniform
+from ._estimate import Fit
 from ._event import Moment
 from ._gradient import Gradient
 from ._jax import jax
@@ -30,7 +31,7 @@ from .errors import ColumnError, DeclarationError, Error, SceneError, SetupError
 
 __version__ = "0.1.0"
 __all__ = [
-    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Gradient", "Happenings", "Many", "Moment", "Orbit", "Plan", "Run",
+    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Fit", "Gradient", "Happenings", "Many", "Moment", "Orbit", "Plan", "Run",
     "Scene", "SceneError", "SceneRun",
     "SetupError", "Signal", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
     "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "jax", "lagrangian", "magnetic_damping", "mixed",
