@@ -390,7 +390,8 @@ impl<'c, 'a, M: Plant> Search<'c, 'a, M> {
         let target = if self.is_nearest { 0.0 } else { self.residual.target.max(self.residual.kept) };
         let uneven = |side: &Side| (side.distance(&self.course) * side.multiplier - self.barrier).abs();
         let uneven = self.sides.iter().map(uneven).fold(self.residual.stationarity.max(target), f64::max);
-        while self.barrier > self.least_barrier && uneven <= 10.0 * self.barrier {
+        // A barrier that has overflowed stays where it is.
+        while self.barrier.is_finite() && self.barrier > self.least_barrier && uneven <= 10.0 * self.barrier {
             self.barrier = (0.2 * self.barrier).min(self.barrier.powf(1.5)).max(self.least_barrier);
         }
     }

@@ -28,7 +28,7 @@ pub use latex::latex;
 pub use liestep_derivation::whole::Sizes;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use whole::{
-    BackendInLanes, Between, Course, Paced, Question, QuestionError, Signal, SignalError, Transition, Varied, Whole,
-    WholeError, for_accuracy, stepper,
+    BackendInLanes, Between, Course, Derivatives, Direction, Gradient, Paced, Question, QuestionError, Reading, Row,
+    Signal, SignalError, Steered, Transition, Varied, Whole, WholeError, for_accuracy, stepper,
 };
 pub use written::{c, constant, gpu, header, is_exact, javascript, prefix, rust};

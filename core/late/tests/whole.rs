@@ -1,6 +1,8 @@
 //! Whole steps on groups that a text declares: order, momentum in space and the group's relation; compositions,
 //! substeps and prescribed values as by typed steppers; errors.
 
+#[path = "whole/motions.rs"]
+mod motions;
 #[path = "whole/special_linear.rs"]
 mod special_linear;
 #[path = "whole/tangent.rs"]

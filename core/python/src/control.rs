@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use liestep::gradients::Plant as _;
+use liestep::gradients::Plant;
 use liestep::motion::{AnyStepper, FactorKind, Integrator as _, Propagator as _};
 use liestep::recording::{Column, Sink as _};
 use liestep::with::Method;
@@ -28,8 +28,10 @@ pub(crate) struct Task {
     goal: Start,
     /// Whether the velocity at the end is free.
     ends_anyhow: bool,
-    /// The components of the velocity along which a force acts.
+    /// The components of the velocity along which a force acts; or the places of the parameters' numbers that are the inputs.
     axes: Vec<usize>,
+    /// The names of the inputs, if they are parameters.
+    inputs: Vec<String>,
     /// The least, the largest and the first force along each of them in each step, on SO(3) N m.
     forces: Vec<[f64; 3]>,
     /// An axis of the body, a direction of space, and the cosine of the angle between both, which isn't exceeded.
@@ -41,12 +43,74 @@ pub(crate) struct Task {
     progress: Option<Py<PyAny>>,
 }
 
+/// A plan with the stepper of its duration.
+pub(crate) struct Planned {
+    stepper: Whole<Backend>,
+    states: Vec<Box<[f64]>>,
+    inputs: Vec<Vec<f64>>,
+    figures: Figures,
+}
+
+/// The figures of a plan besides its motion.
+struct Figures {
+    duration: f64,
+    cost: f64,
+    residual: f64,
+    multipliers: Vec<f64>,
+    iterations: usize,
+    verdict: Verdict,
+}
+
+impl Planned {
+    fn of<M: Slices>(plan: ControlPlan<M>, stepper: Whole<Backend>) -> Self {
+        let ControlPlan { states, inputs, duration, cost, multipliers, residual, iterations, verdict, .. } = plan;
+        let residual = residual.largest();
+        Self {
+            stepper,
+            states,
+            inputs,
+            figures: Figures { duration, cost, residual, multipliers, iterations, verdict },
+        }
+    }
+}
+
+/// A plant on slices of numbers.
+pub(crate) trait Slices:
+    Plant<State = Box<[f64]>, Motion = [f64], Attitude = Vec<f64>, Vector = Vec<f64>, Input = Vec<f64>>
+{
+}
+
+impl<M> Slices for M where
+    M: Plant<State = Box<[f64]>, Motion = [f64], Attitude = Vec<f64>, Vector = Vec<f64>, Input = Vec<f64>>
+{
+}
+
 /// The plan, and the exception raised during its search.
-type PlanResult = (ControlPlan<Whole<Backend>>, Option<PyErr>);
+type PlanResult = (Planned, Option<PyErr>);
 
 impl Task {
     fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<PlanResult, Failure> {
         let stepper = Whole::<Backend>::of(Declaration::sum(terms)?, numbers, self.step, Method::default())?;
+        if self.inputs.is_empty() {
+            let (plan, raised) = self.solve_with(&stepper, &stepper, stepper.force(), self.axes.clone())?;
+            let own = plan.stepper.clone();
+            return Ok((Planned::of(plan, own), raised));
+        }
+        let steered = stepper.steered(self.axes.clone()).map_err(|error| Failure::setup(&error))?;
+        let places = (0..self.axes.len()).collect();
+        let (plan, raised) = self.solve_with(&steered, &stepper, steered.force(), places)?;
+        let own = plan.stepper.whole().clone();
+        Ok((Planned::of(plan, own), raised))
+    }
+
+    /// The plan with this plant, whose scene is stepped by the stepper.
+    fn solve_with<M: Slices>(
+        &self,
+        plant: &M,
+        stepper: &Whole<Backend>,
+        like: Vec<f64>,
+        places: Vec<usize>,
+    ) -> Result<(ControlPlan<M>, Option<PyErr>), Failure> {
         let factors = &stepper.layout().factors;
         let at = |place: &Start| {
             let rest = vec![0.0; stepper.dimension()];
@@ -78,8 +142,8 @@ impl Task {
         let force =
             |step: usize, axis: usize| self.forces.get(step * self.axes.len() + axis).copied().unwrap_or([f64::NAN; 3]);
         let (time, effort) = if self.is_shortest { (1.0, 0.0) } else { (0.0, 1.0) };
-        let control = Control::new(&stepper, at(&self.start)?, self.steps, target)
-            .input(stepper.force(), self.axes.iter().copied())
+        let control = Control::new(plant, at(&self.start)?, self.steps, target)
+            .input(like, places)
             .bounds(|step, axis| (force(step, axis)[0], force(step, axis)[1]))
             .guess(|step, axis| force(step, axis)[2])
             .minimise(Cost { time, effort })
@@ -113,24 +177,28 @@ pub(crate) fn plan<'py>(
         written.map_err(|error| Failure::Of("MemoryError", error.to_string()))?;
         Py::new(py, table.into_table())
     };
-    let any = AnyStepper::new(plan.stepper.clone());
+    let Planned { stepper, states: motion, inputs, figures } = plan;
+    let any = AnyStepper::new(stepper);
     let (factors, columns) = (&any.layout().factors, columns(&any.layout().factors));
     let of_attitude = factors.iter().map(|factor| factor.kind.columns()).sum();
     let (mut states, mut attitude, mut row) = (Vec::new(), vec![0.0; of_attitude], vec![0.0; columns.len()]);
-    for state in plan.states.iter().filter_map(|state| any.state_of(state)) {
+    for state in motion.iter().filter_map(|state| any.state_of(state)) {
         states.push(any.time(&state));
         any.write(&state, &(), &mut attitude, &mut row);
         states.extend(&row[..columns.len() - 1]);
     }
     dictionary.set_item("table", table(columns, states)?)?;
     let names = factors.iter().flat_map(|factor| &factor.components);
+    let of_parameters = task.inputs.iter().map(|name| Column { name: name.clone(), unit: String::new() });
     let forces = names.map(|(name, [velocity, _])| match *velocity {
         "rad/s" => Column { name: format!("torque_{name}"), unit: "N m".to_owned() },
         "m/s" => Column { name: format!("force_{name}"), unit: "N".to_owned() },
         _ => Column { name: format!("force_{name}"), unit: String::new() },
     });
-    dictionary.set_item("inputs", table(forces.collect(), plan.inputs.concat())?)?;
-    let (verdict, why, certificate) = match plan.verdict {
+    let of_inputs: Vec<Column> = if task.inputs.is_empty() { forces.collect() } else { of_parameters.collect() };
+    let steps = inputs.len();
+    dictionary.set_item("inputs", table(of_inputs, inputs.concat())?)?;
+    let (verdict, why, certificate) = match figures.verdict {
         Verdict::Converged => ("converged", None, None),
         Verdict::Infeasible { direction, gap } => ("infeasible", None, Some((direction, gap))),
         Verdict::Exhausted => ("exhausted", None, None),
@@ -142,12 +210,12 @@ pub(crate) fn plan<'py>(
     dictionary.set_item("why", why)?;
     dictionary.set_item("certificate", certificate)?;
     dictionary.set_item("step", any.step_size())?;
-    dictionary.set_item("duration", plan.duration)?;
-    dictionary.set_item("cost", plan.cost)?;
-    dictionary.set_item("residual", plan.residual.largest())?;
-    dictionary.set_item("multipliers", plan.multipliers)?;
-    dictionary.set_item("steps", plan.inputs.len())?;
-    dictionary.set_item("iterations", plan.iterations)?;
+    dictionary.set_item("duration", figures.duration)?;
+    dictionary.set_item("cost", figures.cost)?;
+    dictionary.set_item("residual", figures.residual)?;
+    dictionary.set_item("multipliers", figures.multipliers)?;
+    dictionary.set_item("steps", steps)?;
+    dictionary.set_item("iterations", figures.iterations)?;
     dictionary.set_item("failure", raised)?;
     Ok(dictionary)
 }

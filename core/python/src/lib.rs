@@ -1,14 +1,16 @@
 //! liestep in Python: the part that is written in Rust, and that the package `liestep` is made of.
 //!
-//! `lib → {control, picture, file → state} → scene → {signal → orbit, ensemble} → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
+//! `lib → {estimate → control, gradient, picture, file → state} → scene → {signal → orbit, ensemble} → {run, method} → start → table → failure`: a text is derived by `liestep-late`; what it
 //! declares is stepped by any method, recorded into columns that `NumPy` and Arrow look at where they are, or drawn at random.
 //! Whatever takes long leaves the interpreter to others, and asks it now and then whether it is to stop.
 #![forbid(unsafe_code)]
 
 mod control;
 mod ensemble;
+mod estimate;
 mod failure;
 mod file;
+mod gradient;
 mod method;
 mod orbit;
 mod picture;
@@ -30,6 +32,7 @@ use pyo3::types::PyDict;
 use crate::control::Task;
 use crate::ensemble::{Draws, Members};
 use crate::failure::Failure;
+use crate::gradient::{Covectors, Motion};
 use crate::method::{Names, method};
 use crate::orbit::{Along, Orbit};
 use crate::run::{Course, RunRecord};
@@ -134,6 +137,22 @@ impl Scene {
         Ok(self.0.certificate()?)
     }
 
+    /// The kinds of the group's factors, and the rows of their matrices.
+    #[getter]
+    fn factors(&self) -> PyResult<Vec<(&'static str, usize)>> {
+        Ok(self.0.factors()?)
+    }
+
+    /// The attitude `g exp ζ̂`.
+    fn displaced(&self, attitude: Vec<f64>, turn: Vec<f64>) -> PyResult<Vec<f64>> {
+        Ok(self.0.displaced(&attitude, &turn)?)
+    }
+
+    /// The derivatives of a displacement after `ζ` by `ζ`, column by column.
+    fn turn_slopes(&self, turn: Vec<f64>) -> PyResult<Vec<f64>> {
+        Ok(self.0.turn_slopes(&turn)?)
+    }
+
     #[allow(clippy::needless_pass_by_value)]
     fn check(&self, h: f64, how: Names) -> PyResult<()> {
         Ok(self.0.stepper((method(&how)?, h)).map(drop)?)
@@ -151,6 +170,45 @@ impl Scene {
         let method = method(&how)?;
         let recorded = py.detach(|| self.0.run((method, h), &start, &course))?;
         shown(py, recorded)
+    }
+
+    /// The gradient of a scalar by whose derivatives a run's columns are given.
+    fn gradient<'py>(
+        &self,
+        py: Python<'py>,
+        h: f64,
+        how: Names,
+        motion: Motion,
+        by: Covectors,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        self.0.gradient(py, (method(&how)?, h), &motion, &by)
+    }
+
+    /// The changes of a run's columns along changes of attitude, velocity and parameters.
+    fn along<'py>(
+        &self,
+        py: Python<'py>,
+        h: f64,
+        how: Names,
+        motion: Motion,
+        change: (Vec<f64>, Vec<f64>, Vec<f64>),
+    ) -> PyResult<Bound<'py, PyDict>> {
+        self.0.along(py, (method(&how)?, h), &motion, change)
+    }
+
+    /// The state transition matrix, column by column, or the exponents, if `between` counts the steps from one
+    /// orthonormalisation to the next.
+    fn transition(
+        &self,
+        py: Python<'_>,
+        h: f64,
+        how: Names,
+        start: Start,
+        steps: u64,
+        between: Option<u64>,
+    ) -> PyResult<Vec<f64>> {
+        let method = (method(&how)?, h);
+        Ok(py.detach(|| self.0.transition(method, &start, (steps, between)))?)
     }
 
     /// The state at a start, for a loop.
@@ -227,6 +285,14 @@ fn plan<'py>(py: Python<'py>, terms: Vec<Term<'py>>, task: Task) -> PyResult<Bou
     control::plan(py, &terms, &numbers, &task)
 }
 
+/// An estimate of the sum of these terms.
+#[pyfunction]
+#[pyo3(name = "estimate")]
+fn fitted<'py>(py: Python<'py>, terms: Vec<Term<'py>>, task: estimate::Task) -> PyResult<Bound<'py, PyDict>> {
+    let (terms, numbers) = apart(terms);
+    estimate::estimate(py, &terms, &numbers, &task)
+}
+
 /// The names of all schemes, by the kind of the method.
 #[pyfunction]
 fn schemes() -> Vec<(&'static str, Vec<&'static str>)> {
@@ -248,7 +314,7 @@ fn share(text: &str) -> PyResult<(u64, u64)> {
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::{Along, Derivation, Orbit, Scene, Signal, State, Table, View, order, plan, schemes, share};
+    use super::{Along, Derivation, Orbit, Scene, Signal, State, Table, View, fitted, order, plan, schemes, share};
     #[pymodule_export]
     use crate::file::{File, FileRun, library, ratio};
     #[pymodule_export]

@@ -12,7 +12,7 @@ use liestep_late::{
 use crate::ensemble::{Draws, Members, Outcome, run_members};
 use crate::failure::Failure;
 use crate::run::{Course, RunRecord, record};
-use crate::signal::{Change, Changes, SceneCourse};
+use crate::signal::{Change, Changes, SceneCourse, SignalSlopes};
 use crate::start::{Start, started};
 
 /// The back end of programs: machine code if that feature is on, otherwise the interpreter, with the same bits.
@@ -52,16 +52,36 @@ impl Scene {
             return Err(Failure::Of("SetupError", message.to_owned()));
         }
         let whole = Whole::<Backend>::of(self.declaration, numbers, h, method)?;
-        let driven = whole.driven(SceneCourse(Arc::clone(&self.changes)));
+        let driven = whole.driven(self.course());
         Ok(AnyStepper::new(driven.map_err(|error| self.caused(Failure::setup(&error)))?))
     }
 
     /// The numbers of what is carried along, as the body sees them at the attitude of a state and at this time, s.
     pub(crate) fn seen(&self, state: &[f64], time: f64) -> Result<Vec<f64>, Failure> {
         let mut numbers = self.numbers.clone();
-        SceneCourse(Arc::clone(&self.changes)).at(time, &mut numbers);
+        self.course().at(time, &mut numbers);
         let whole = Whole::<Backend>::of(self.declaration, &numbers, 1.0, Method::default())?;
         Ok(whole.adopt(state)[whole.layout().advected()].to_vec())
+    }
+
+    /// The stepper of the declared step, or of a composition of it, with the numbers of the start.
+    pub(crate) fn whole(&self, (method, h): (Method, f64)) -> Result<Whole<Backend>, Failure> {
+        Ok(Whole::of(self.declaration, &self.numbers, h, method)?)
+    }
+
+    /// The numbers of the terms as functions of time.
+    pub(crate) fn course(&self) -> SceneCourse {
+        SceneCourse(Arc::clone(&self.changes))
+    }
+
+    /// No derivatives by the parameters that change with time, for so many steps.
+    pub(crate) fn slopes(&self, steps: u64, h: f64) -> SignalSlopes {
+        SignalSlopes::none(Arc::clone(&self.changes), steps, h)
+    }
+
+    /// Whether it is stepped in a time of its own.
+    pub(crate) fn has_pace(&self) -> bool {
+        self.declaration.energy.is_some()
     }
 
     /// Whether there are parameters that change with time.

@@ -156,3 +156,61 @@ impl Course for SceneCourse {
         self.0.write(numbers, start + length * 0.5, |signal, value| signal.mean([start, length], value));
     }
 }
+
+/// Derivatives of a scalar by the parameters of a scene that change with time: by a signal's values, or for each step by the value
+/// over it.
+pub(crate) struct SignalSlopes {
+    changes: Arc<Changes>,
+    lists: Vec<Vec<f64>>,
+    h: f64,
+}
+
+impl SignalSlopes {
+    fn count(change: &Change, steps: u64) -> usize {
+        match &change.source {
+            Source::Signal(signal) => signal.get().0.values().len(),
+            _ => change.width * usize::try_from(steps).unwrap_or(0),
+        }
+    }
+
+    pub(crate) fn none(changes: Arc<Changes>, steps: u64, h: f64) -> Self {
+        let lists = changes.all.iter().map(|change| vec![0.0; Self::count(change, steps)]).collect();
+        Self { changes, lists, h }
+    }
+
+    /// Adds the derivatives by all numbers over a span of time, its start and length in s.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a negative one becomes zero
+    pub(crate) fn add(&mut self, span: [f64; 2], by_numbers: &[f64]) {
+        for (change, list) in self.changes.all.iter().zip(&mut self.lists) {
+            let own = by_numbers.get(change.first..change.first + change.width).unwrap_or_default();
+            match &change.source {
+                Source::Signal(signal) if change.is_direction => {
+                    let signal = &signal.get().0;
+                    let mut value = vec![0.0; change.width];
+                    if span[1] == 0.0 {
+                        signal.at(span[0], &mut value)
+                    } else {
+                        signal.mean(span, &mut value)
+                    }
+                    // A direction is divided by its length.
+                    let size = length(&value);
+                    let along: f64 = own.iter().zip(&value).map(|(slope, part)| slope * part / size).sum();
+                    let part = |(slope, part): (&f64, &f64)| (slope - along * part / size) / size;
+                    let across: Vec<f64> = own.iter().zip(&value).map(part).collect();
+                    signal.slopes(span, &across, list);
+                }
+                Source::Signal(signal) => signal.get().0.slopes(span, own, list),
+                _ => {
+                    let last = (list.len() / change.width.max(1)).saturating_sub(1);
+                    let step = ((span[0] / self.h + 1e-9).floor() as usize).min(last);
+                    let places = list.iter_mut().skip(step * change.width);
+                    places.zip(own).for_each(|(sum, slope)| *sum += slope);
+                }
+            }
+        }
+    }
+
+    pub(crate) fn into_lists(self) -> Vec<Vec<f64>> {
+        self.lists
+    }
+}

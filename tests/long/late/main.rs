@@ -3,3 +3,4 @@
 mod bits;
 mod methods;
 mod same;
+mod slopes;

@@ -9,6 +9,8 @@ use liestep::numbers::Entries;
 use liestep::with::Method;
 use liestep_late::{Declaration, Whole, numbers};
 
+use crate::slopes::assert_gradient;
+
 /// Asserts that the declaration, read from its text, makes the steps of the compiled effect.
 pub(crate) fn assert_as_compiled<E>(compiled: &E, seed: u64)
 where
@@ -40,7 +42,8 @@ pub(crate) fn list<E: Entries<f64>>(value: &E) -> Vec<f64> {
 }
 
 /// Asserts that the whole step of the declaration, whose states are slices, makes the steps of the compiled effect, also if
-/// they are so long that a solve needs care or has no solution: the same numbers, reports, errors and parts of steps.
+/// they are so long that a solve needs care or has no solution: the same numbers, reports, errors and parts of steps; and that
+/// its gradients are those of differences.
 pub(crate) fn assert_whole<E>(compiled: &E, declaration: &'static Declaration, seed: u64)
 where
     E: Regular<Scalar = f64, Retraction = CayleyRetraction> + Clone,
@@ -51,6 +54,9 @@ where
     let mut vector = || -> <E::Group as LieGroup>::Vector { random.sample() };
     let (attitude, velocity) = (<CayleyRetraction as Retraction<E::Group>>::retract(&(vector() * 0.5)), vector());
     let values = declaration.described(&numbers(compiled)).expect("numbers");
+    if declaration.energy.is_none() {
+        assert_gradient(declaration, &values, &list(&attitude.matrix()), &list(&velocity));
+    }
     let rows = declaration.factors.iter().map(|factor| factor.generators[0].len().isqrt()).max();
     // In a sum the tangent of the retraction is taken after the sum.
     let has_one_tangent = declaration.in_increment && declaration.name.contains(" + ");

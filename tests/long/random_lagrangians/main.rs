@@ -7,6 +7,8 @@ mod continuous;
 mod family;
 #[path = "../late/same.rs"]
 mod same;
+#[path = "../late/slopes.rs"]
+mod slopes;
 
 use checks::structure::{Group as _, System, equations, momenta, poisson, stages, symmetry, two_flows};
 use liestep::Stepper;

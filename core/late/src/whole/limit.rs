@@ -18,7 +18,7 @@ pub(super) struct Limit<'a, B: Backend<f64>> {
 }
 
 impl<B: Backend<f64>> Limit<'_, B> {
-    fn of(&self, program: &Ready<B::Code>, array: Array, value: &[f64]) -> Vec<f64> {
+    pub(super) fn of(&self, program: &Ready<B::Code>, array: Array, value: &[f64]) -> Vec<f64> {
         let mut outputs = vec![0.0; program.outputs];
         let given = [(array, value), (Array::Parameters, self.numbers), (Array::Advected, self.advected)];
         B::run(&program.code, &[], given, &mut outputs);

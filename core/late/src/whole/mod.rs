@@ -18,7 +18,7 @@
 //!
 //! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
 //! `methods → {collocation, rotating, density}`, `collocation → stepper`,
-//! `{density → varied → course, pace} → {stepper, lengths}`,
+//! `steered → {plant, forwards}`, `{density, forwards → {derivatives → tape, tangent} → {varied → course, slopes → limit}, pace} → {stepper, lengths}`,
 //! `inputs → {tangent → composed, limit}` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
 //! {codes, linear}`.
 
@@ -31,7 +31,9 @@ mod composed;
 mod constants;
 mod course;
 mod density;
+mod derivatives;
 mod diagnosis;
+mod forwards;
 mod inputs;
 mod iteration;
 mod lengths;
@@ -42,16 +44,22 @@ mod pace;
 mod plant;
 mod rotating;
 mod signal;
+mod slopes;
+mod steered;
 mod step;
 mod stepper;
 mod tangent;
+mod tape;
 mod varied;
 
 pub use abreast::BackendInLanes;
 pub use course::Course;
+pub use derivatives::{Derivatives, Gradient, Reading, Row};
+pub use forwards::Direction;
 pub use inputs::Transition;
 pub use methods::{Question, QuestionError, for_accuracy, stepper};
 pub use pace::Paced;
 pub use signal::{Between, Signal, SignalError};
+pub use steered::Steered;
 pub use stepper::{Whole, WholeError};
 pub use varied::Varied;

@@ -136,6 +136,34 @@ impl Signal {
         value.iter_mut().enumerate().for_each(|(component, number)| *number = self.on(piece, time, component));
     }
 
+    /// Adds to the derivatives of a scalar by all values those by the mean over a step of this start and length, s; by the value at
+    /// the start, where the length is zero.
+    pub fn slopes(&self, [start, length]: [f64; 2], by_mean: &[f64], by_values: &mut [f64]) {
+        let end = start + length;
+        let (Some(from), Some(to)) = (self.within(start.min(end)), self.within(start.max(end))) else { return };
+        let next = |piece: usize| self.times.get(piece + 1).copied().unwrap_or(f64::INFINITY);
+        let mut add = |piece: usize, time: f64, weight: f64| {
+            let share = if self.between == Between::Steps {
+                0.0
+            } else {
+                (time - self.times[piece]) / (self.times[piece + 1] - self.times[piece])
+            };
+            for (at, part) in [(piece, 1.0 - share), (piece + 1, share)].into_iter().filter(|(_, part)| *part != 0.0) {
+                let own = by_values.iter_mut().skip(at * self.width).zip(by_mean);
+                own.for_each(|(sum, slope)| *sum += slope * weight * part);
+            }
+        };
+        let (mut piece, mut begin) = (self.piece(from), from);
+        if from >= to {
+            return add(piece, from, 1.0);
+        }
+        while begin < to {
+            let close = next(piece).min(to);
+            add(piece, begin + (close - begin) * 0.5, (close - begin) / (to - from));
+            (piece, begin) = (piece + 1, close);
+        }
+    }
+
     /// Writes the mean over a step of this start and length, s; NaN where there is none.
     pub fn mean(&self, [start, length]: [f64; 2], value: &mut [f64]) {
         let end = start + length;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use liestep::StepError;
 use liestep_derivation::Array;
-use liestep_derivation::whole::WholeStep;
+use liestep_derivation::whole::{Sizes, WholeStep};
 
 use super::composed::Stages;
 use super::constants::StepConstants;
@@ -27,6 +27,29 @@ impl<B: Backend<f64>> TangentCode<B> {
             code.map(Self).ok_or(LateError::TooLarge)
         })
     }
+
+    /// Applies the tangent map of a stage to columns of `(ζ, δμ)`; the states are those before and after it.
+    pub(super) fn apply(
+        &self,
+        sizes: &Sizes,
+        constants: &StepConstants,
+        (before, after): (&[f64], &[f64]),
+        columns: &mut [f64],
+    ) {
+        let n = sizes.n;
+        let mut made = vec![0.0; 2 * n];
+        for column in columns.chunks_exact_mut(2 * n) {
+            let given = [
+                (Array::Half, &after[sizes.history()..sizes.history() + n]),
+                (Array::Momentum, &before[sizes.momentum()..sizes.advected()]),
+                (Array::Advected, &before[sizes.advected()..sizes.history()]),
+                (Array::Velocity, &column[..n]),
+                (Array::History, &column[n..]),
+            ];
+            B::run(&self.0.code, &constants.numbers, given, &mut made);
+            column.copy_from_slice(&made);
+        }
+    }
 }
 
 impl Stages {
@@ -40,25 +63,15 @@ impl Stages {
         room: &mut [f64],
     ) -> Result<Vec<f64>, StepError> {
         let (sizes, mut next) = (&numbered.codes.sizes, state.to_vec());
-        let (n, count) = (sizes.n, 2 * sizes.n);
+        let count = 2 * sizes.n;
         let mut columns: Vec<f64> = (0..count * count).map(|at| f64::from(u8::from(at % (count + 1) == 0))).collect();
-        let (mut made, mut before) = (vec![0.0; count], Vec::new());
+        let mut before = Vec::new();
         let mut watch = |constants: &StepConstants, after: &[f64]| {
             if before.is_empty() {
                 before.extend_from_slice(after);
                 return;
             }
-            for column in columns.chunks_exact_mut(count) {
-                let given = [
-                    (Array::Half, &after[sizes.history()..sizes.history() + n]),
-                    (Array::Momentum, &before[sizes.momentum()..sizes.advected()]),
-                    (Array::Advected, &before[sizes.advected()..sizes.history()]),
-                    (Array::Velocity, &column[..n]),
-                    (Array::History, &column[n..]),
-                ];
-                B::run(&tangent.0.code, &constants.numbers, given, &mut made);
-                column.copy_from_slice(&made);
-            }
+            tangent.apply(sizes, constants, (&before, after), &mut columns);
             before.clear();
         };
         self.watched(numbered, &mut next, room, &mut watch)?;

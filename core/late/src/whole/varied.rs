@@ -51,12 +51,12 @@ use crate::code::{Backend, Interpreter};
 /// ```
 pub struct Varied<B: Backend<f64> = Interpreter> {
     /// The stepper with the numbers of the start, and the unit of the steps.
-    whole: Whole<B>,
-    course: Option<Rc<dyn Course>>,
-    lengths: Lengths,
+    pub(super) whole: Whole<B>,
+    pub(super) course: Option<Rc<dyn Course>>,
+    pub(super) lengths: Lengths,
     layout: Layout,
     /// For each stage its begin and its length as fractions of the step.
-    stages: Vec<[f64; 2]>,
+    pub(super) stages: Vec<[f64; 2]>,
 }
 
 impl<B: Backend<f64>> Clone for Varied<B> {
@@ -74,9 +74,9 @@ impl<B: Backend<f64>> fmt::Debug for Varied<B> {
 }
 
 /// The room of a step: a stepper for each stage, and a state of [`Whole`].
-struct Room<B: Backend<f64>> {
-    stages: Vec<Whole<B>>,
-    state: Vec<f64>,
+pub(super) struct Room<B: Backend<f64>> {
+    pub(super) stages: Vec<Whole<B>>,
+    pub(super) state: Vec<f64>,
     numbers: Vec<f64>,
     rest: Vec<f64>,
 }
@@ -112,7 +112,7 @@ impl<B: Backend<f64>> Whole<B> {
         Varied { lengths: Lengths::Density(rate), ..self.varied() }
     }
 
-    fn varied(&self) -> Varied<B> {
+    pub(super) fn varied(&self) -> Varied<B> {
         let mut begin = 0.0;
         let share = |share| {
             begin += share;
@@ -142,7 +142,7 @@ impl<B: Backend<f64>> Varied<B> {
         &state[self.whole.codes.sizes.state() - 1..state.len() - 1]
     }
 
-    fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
+    pub(super) fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
         if state.len() == self.layout.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
     }
 
@@ -158,7 +158,7 @@ impl<B: Backend<f64>> Varied<B> {
     }
 
     /// The numbers at a time.
-    fn numbers_at(&self, time: f64) -> Vec<f64> {
+    pub(super) fn numbers_at(&self, time: f64) -> Vec<f64> {
         let mut numbers = self.whole.numbers.to_vec();
         if let Some(course) = &self.course {
             course.at(time, &mut numbers);
@@ -230,6 +230,9 @@ impl<B: Backend<f64>> Varied<B> {
         state: &mut [f64],
     ) -> Result<(), StepError> {
         let Some(course) = &self.course else {
+            if stage.h.to_bits() == span[1].to_bits() {
+                return Ok(());
+            }
             return stage.take(numbers, span[1]).map_err(|_| OF_THIS_LENGTH);
         };
         course.over(span, numbers);
@@ -242,7 +245,17 @@ impl<B: Backend<f64>> Varied<B> {
     }
 
     /// Makes one step of this start and length in a room's state, and counts it.
-    fn advance(&self, room: &mut Room<B>, [start, length]: [f64; 2]) -> Result<u32, StepError> {
+    fn advance(&self, room: &mut Room<B>, span: [f64; 2]) -> Result<u32, StepError> {
+        self.watched(room, span, &mut |_, _| ())
+    }
+
+    /// One step, whose stages are watched: `watch` gets the stepper of each and the state before it, and then after it.
+    pub(super) fn watched(
+        &self,
+        room: &mut Room<B>,
+        [start, length]: [f64; 2],
+        watch: &mut impl FnMut(&Whole<B>, &[f64]),
+    ) -> Result<u32, StepError> {
         let Room { stages, state, numbers, rest: room } = room;
         let of = |stage: usize| {
             let [begin, share] = self.stages[stage];
@@ -251,15 +264,21 @@ impl<B: Backend<f64>> Varied<B> {
         let iterations = if self.whole.stages.is_single() {
             let stage = &mut stages[0];
             self.enter(stage, numbers, of(0), state)?;
-            match stage.stages.step_in_one_piece(stage.numbered(), state) {
+            watch(stage, state);
+            let iterations = match stage.stages.step_in_one_piece(stage.numbered(), state) {
                 Some(iterations) => iterations,
                 None => stage.stages.step(stage.numbered(), state, room)?,
-            }
+            };
+            watch(stage, state);
+            iterations
         } else {
             let mut make = |number: usize, next: &mut [f64], room: &mut [f64]| -> Result<Increment, StepError> {
                 let stage = &mut stages[number];
                 self.enter(stage, numbers, of(number), next)?;
-                stage.numbered().increment(stage.stages.first(), next, room)
+                watch(stage, next);
+                let made = stage.numbered().increment(stage.stages.first(), next, room)?;
+                watch(stage, next);
+                Ok(made)
             };
             self.whole.stages.each(self.whole.numbered(), state, room, &mut make)?
         };
@@ -275,7 +294,7 @@ impl<B: Backend<f64>> Varied<B> {
     }
 
     /// Gives a room's state the memory of a new start, for a step of this start and length.
-    fn forget(&self, room: &mut Room<B>, [start, length]: [f64; 2]) -> Result<(), StepError> {
+    pub(super) fn forget(&self, room: &mut Room<B>, [start, length]: [f64; 2]) -> Result<(), StepError> {
         let [_, share] = self.stages[0];
         let Room { stages, state, numbers, .. } = room;
         self.enter(&mut stages[0], numbers, [start, length * share], state)?;
@@ -331,14 +350,14 @@ impl<B: Backend<f64>> Varied<B> {
         Ok(iterations)
     }
 
-    fn roomy(&self) -> Result<Room<B>, StepError> {
+    pub(super) fn roomy(&self) -> Result<Room<B>, StepError> {
         self.room().map_err(|_| OF_THIS_LENGTH)
     }
 }
 
 impl<B: Backend<f64>> Room<B> {
     /// Copies a state without the memory of the lengths.
-    fn load(&mut self, state: &[f64]) {
+    pub(super) fn load(&mut self, state: &[f64]) {
         let last = self.state.len() - 1;
         self.state[..last].copy_from_slice(&state[..last]);
         self.state[last] = state[state.len() - 1];

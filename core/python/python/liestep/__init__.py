@@ -13,7 +13,10 @@ from . import errors
 from ._control import Control, Plan
 from ._declared import contravariant, covariant, mixed, point
 from ._ensemble import Ensemble, Many, Spread, normal, rotation, uniform
+from ._estimate import Fit
 from ._event import Moment
+from ._gradient import Gradient
+from ._jax import jax
 from ._library import (
     body, dipole, drag, gravity, gravity_gradient, magnetic_damping, nonstandard, rotor, spring, thrust, torque,
 )
@@ -23,13 +26,14 @@ from ._signal import Signal, signal
 from ._state import State
 from ._stepper import Stepper, euler, schemes, translation
 from ._term import Term, force, lagrangian, nonholonomic
+from ._torch import torch
 from .errors import ColumnError, DeclarationError, Error, SceneError, SetupError, StepError, StoreError
 
 __version__ = "0.1.0"
 __all__ = [
-    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Moment", "Orbit", "Plan", "Run",
+    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Fit", "Gradient", "Happenings", "Many", "Moment", "Orbit", "Plan", "Run",
     "Scene", "SceneError", "SceneRun",
     "SetupError", "Signal", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
-    "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "mixed",
-    "nonholonomic", "nonstandard", "normal", "orbit", "point", "rotation", "rotor", "scene", "schemes", "signal", "spring", "thrust", "torque", "translation", "uniform",
+    "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "jax", "lagrangian", "magnetic_damping", "mixed",
+    "nonholonomic", "nonstandard", "normal", "orbit", "point", "rotation", "rotor", "scene", "schemes", "signal", "spring", "thrust", "torch", "torque", "translation", "uniform",
 ]

@@ -25,7 +25,7 @@ _SENTENCES = {
     "converged": "the conditions of an optimum hold to the tolerance",
     "infeasible": "to first order no torque within the bounds closes the gap",
     "exhausted": "the iterations were too few",
-    "stalled": "no step of the search is better, however short",
+    "stalled": "no step of the search is better, however short: give another `guess`",
     "cancelled": "it was stopped while it was searched",
 }
 
@@ -38,6 +38,7 @@ class _Task:
     goal: _Start
     ends_anyhow: bool
     axes: list[int]
+    inputs: list[str]
     forces: list[list[float]]
     cones: list[tuple[list[float], list[float], float]]
     is_shortest: bool
@@ -96,7 +97,7 @@ class Plan(Run):
 
     @property
     def force(self) -> Array:
-        """The force of each step, along all components of a velocity: a row less than there are states."""
+        """The force of each step, along all components of a velocity, or the inputs: a row less than there are states."""
         return self.inputs.group("")
 
     def __repr__(self) -> str:
@@ -115,6 +116,22 @@ def _components(axes: Any, dimension: int, is_body: bool) -> list[int]:
     if not named or any(not 0 <= k < dimension for k in named):
         raise SetupError(f"`axes` are {known}, not {axes!r:.80}")
     return named
+
+
+def chosen(term: Sum, inputs: str | Iterable[str]) -> tuple[list[int], list[str]]:
+    """The places of the numbers of some parameters among all, and a name for each."""
+    places: list[int] = []
+    names: list[str] = []
+    for name in [inputs] if isinstance(inputs, str) else inputs:
+        found = term._found(name)
+        if len(found) > 1:
+            raise SetupError(f"`{name}` is a parameter of several terms: write the one, as `{name}_1`")
+        first, count = term._first_number(found[0]), len(term._value(found[0]).numbers)
+        places += range(first, first + count)
+        names += [name] if count == 1 else [f"{name}_{number}" for number in range(1, count + 1)]
+    if not places:
+        raise SetupError("`inputs` are names of parameters, one at least")
+    return places, names
 
 
 class Control:
@@ -139,10 +156,15 @@ class Control:
         motion is free.
     axes : str or list of int, optional
         The components of the velocity along which the force acts, from zero, all by default; on SO(3) also as a text, ``"z"``.
+    inputs : str or list of str, optional
+        Parameters of the term whose values are what is chosen in each step, instead of a force beside it: thrusts of a force of
+        your own, the length of a pendulum, a field. `bound` and `guess` are then those of these numbers, and the effort is that of
+        their squares.
     minimum_time : bool
         Whether the time is minimised; else it is the effort ``½ ∫ |u|² dt``.
     guess : array_like, optional
-        The force that the search begins with, of the shapes of `bound`. A search goes downhill from there.
+        The force that the search begins with, of the shapes of `bound`: none by default, or a thousandth of `bound` where the time
+        is minimised. A search goes downhill from there.
     keep_out : iterable of (array_like, array_like, float)
         An axis of the body, a direction of space, and the least angle between them, rad, in each state; the first factor of the
         group is SO(3).
@@ -165,6 +187,13 @@ class Control:
     >>> push = cart.control(step=0.01, steps=100, goal=[[1, 0.5], [0, 1]]).solve()
     >>> push.verdict, round(push.cost, 2), push.force.shape
     ('converged', 6.0, (100, 1))
+
+    The same by a force of one's own, whose parameter ``u`` is chosen:
+
+    >>> own = ls.force("R1", work="h * u * (eta[0] + eta_next[0]) / 2", u=0.0)
+    >>> push = (cart + own).control(step=0.01, steps=100, goal=[[1, 0.5], [0, 1]], inputs="u").solve()
+    >>> push.verdict, round(push.cost, 2), push.inputs.names
+    ('converged', 6.0, ['u'])
     """
 
     def __init__(
@@ -179,6 +208,7 @@ class Control:
         goal_velocity: Any = (),
         bound: Any = None,
         axes: str | Iterable[int] | None = None,
+        inputs: str | Iterable[str] | None = None,
         minimum_time: bool = False,
         guess: Any = None,
         keep_out: Iterable[tuple[Any, Any, float]] = (),
@@ -188,7 +218,13 @@ class Control:
         if term.role != "lagrangian" or term.has_pace or term._signals():
             raise SetupError(f"a plan is one of a Lagrangian without a pace or a signal, and not of {term!r:.80}")
         whole("steps", steps, 1, 10**6)
-        along = _components(axes, term._terms()[0][0].dimension, term.group == "SO3")
+        named: list[str] = []
+        if inputs is None:
+            along = _components(axes, term._terms()[0][0].dimension, term.group == "SO3")
+        elif axes is not None:
+            raise SetupError("a plan has `axes` of a force beside the term, or `inputs` that are its parameters")
+        else:
+            along, named = chosen(term, inputs)
 
         def spread(name: str, value: Any) -> Array:
             try:
@@ -198,7 +234,9 @@ class Control:
                 raise SetupError(f"`{name}` is {shape}, not of the shape {np.shape(value)}") from error
 
         largest = spread("bound", inf if bound is None else bound)
-        first = spread("guess", 0.0 if guess is None else guess)
+        # Without any force a motion in the shortest time may be a saddle, from which no direction leads down.
+        small = 1e-3 * np.where(np.isfinite(largest), largest, 1.0) if minimum_time else 0.0
+        first = spread("guess", small if guess is None else guess)
         forces = np.stack([-largest, largest, first], axis=2).reshape(-1, 3)
         cones = []
         try:
@@ -218,7 +256,7 @@ class Control:
             raise SetupError(f"`step` is a length above zero, s, not {step!r:.80}")
         self.term, self.steps, self.step = term, steps, length
         end = _start(goal, () if goal_velocity is None else goal_velocity)
-        self._task = _Task(self.step, steps, _start(start, velocity), end, goal_velocity is None, along, forces.tolist(), cones,
+        self._task = _Task(self.step, steps, _start(start, velocity), end, goal_velocity is None, along, named, forces.tolist(), cones,
                            bool(minimum_time), 0.0, 0, None)
 
     def solve(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import pickle
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _arrays, _native
+from ._gradient import Differentiable
 from ._state import State
 from ._tables import written
 from .errors import ColumnError, SceneError, SetupError
@@ -129,7 +129,20 @@ class Motion(Columns):
         return self.group("momentum_")
 
 
-class Run(Motion):
+def rotations(quaternions: Array) -> Array:
+    """The matrices of unit quaternions ``w, x, y, z``, a row for each."""
+    import numpy as np
+
+    w, x, y, z = quaternions.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)
+
+
+class Run(Motion, Differentiable):
     """What was recorded of a run.
 
     Attributes
@@ -185,12 +198,10 @@ class Run(Motion):
         return self._error
 
     def __getstate__(self) -> dict[str, Any]:
-        try:
-            pickle.dumps(self._estimate)
-        except (pickle.PicklingError, AttributeError, TypeError):
-            # A signal by a function that doesn't pickle leaves no other runs.
-            return {**self.__dict__, "_error": self.error, "_estimate": None}
-        return self.__dict__
+        if self._origin is None or self._origin.does_pickle():
+            return self.__dict__
+        # A signal by a function that doesn't pickle leaves no other runs.
+        return {**self.__dict__, "_error": self.error, "_estimate": None, "_origin": None}
 
     @property
     def _said(self) -> str:
@@ -225,15 +236,7 @@ class Run(Motion):
     @property
     def matrix(self) -> Array:
         """The attitudes on SO(3) as matrices, body to space."""
-        import numpy as np
-
-        w, x, y, z = self.quaternion.T
-        rows = [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-        return np.moveaxis(np.array(rows), 2, 0)
+        return rotations(self.quaternion)
 
     @property
     def axis(self) -> Array:

@@ -11,6 +11,7 @@ from . import _native
 from ._arrays import floats, number, whole
 from ._declared import Sum
 from ._event import Moment, Watch, watch
+from ._gradient import Origin
 from ._run import Run
 from ._signal import Signal, reach
 from ._state import State
@@ -304,7 +305,9 @@ class Stepper:
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
         reach(self.term._signals(), course.until)
         made = self._native.run(self.step, self.method, start, course)
-        return _finished(self.term, self.step, made, names, self._about(), _Estimate(self, start, course.until))
+        run = _finished(self.term, self.step, made, names, self._about(), _Estimate(self, start, course.until))
+        run._origin = Origin(self, start)
+        return run
 
     def _about(self) -> str:
         kind, scheme, compensated, substeps = self.method
@@ -428,6 +431,7 @@ class _Search(Stepper):
         about = f"steps of {made['step']:.4g} s{_by(kind, name)}"
         run = _finished(self.term, made["step"], made, names, about)
         run.method = _method(kind, name)
+        run._origin = Origin(Stepper(self.term, made["step"], **run.method), start)
         return run
 
     def _by_own_steps(self, start: _Start, course: _Course, names: list[str]) -> Run:

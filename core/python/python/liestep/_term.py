@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ._arrays import floats, text
 from ._control import Control
 from ._declared import Group, Sum, Summand, Value, _value
 from ._ensemble import Ensemble
+from ._estimate import Fit, estimate
 from ._run import Run
 from ._stepper import Stepper, accurate
 from .errors import DeclarationError
@@ -80,6 +81,73 @@ class Term(Sum):
         (True, True)
         """
         return Control(self, step=step, steps=steps, **task)
+
+    def estimate(
+        self,
+        *,
+        step: float,
+        readings: Mapping[str, tuple[Any, Any]],
+        unknown: Iterable[str] = (),
+        every: int = 1,
+        velocity: Any = None,
+        attitude: Any = None,
+        known: Mapping[str, float] | None = None,
+        **rest: Any,
+    ) -> Fit:
+        """The start and the parameters of a motion from readings, by least squares, on any group.
+
+        Parameters
+        ----------
+        step : float
+            The length of a step, s.
+        readings : mapping
+            Values and their standard deviation by ``velocity``, ``momentum``, ``spatial_momentum``, ``attitude`` (on SO(3)
+            quaternions, matrices or SciPy's ``Rotation``; elsewhere the entries) or ``energy``: a row for each time, NaN where there
+            is none.
+        unknown : list of str
+            Parameters that are estimated, from the term's own values on; of an inertia about known axes the three moments, else six
+            numbers.
+        every : int
+            Steps from reading to reading.
+        velocity, attitude : array_like, optional
+            The first guess of the start: by default the first reading of the velocity, and the identity.
+        known : mapping, optional
+            Standard deviations of the first guess: of ``"attitude"``, rad, ``"momentum"``, and of unknown parameters.
+        force : float or array_like, optional
+            The standard deviation of an unknown force in each step, along `axes`; on SO(3) a torque, N m.
+        inputs : mapping, optional
+            Instead the standard deviations of parameters that have another value in each step, about the term's own.
+        axes, tolerance, iterations : optional
+            The components of the velocity along which that force acts; the last step of the search, in standard deviations;
+            and its most iterations.
+
+        Returns
+        -------
+        Fit
+
+        Raises
+        ------
+        SetupError
+            Readings, unknowns or a start that can't be used.
+        StepError
+            A step of the first guess that has no solution.
+
+        Examples
+        --------
+        The moments of a body that a known torque turns, from its gyroscope:
+
+        >>> import liestep as ls
+        >>> import numpy as np
+        >>> body = lambda J: ls.body(J, kinetic="cayley") + ls.torque([0.1, 0.05, 0.2])
+        >>> gyroscope = body([1.0, 2.0, 2.5]).stepper(0.02).run(velocity=[0.5, 1, 0.2], until=4).velocity
+        >>> noise = 1e-3 * np.random.default_rng(1).standard_normal(gyroscope.shape)
+        >>> fit = body([1.2, 1.8, 2.2]).estimate(step=0.02, readings={"velocity": (gyroscope + noise, 1e-3)},
+        ...     unknown=["J"], known={"attitude": 1e-3})
+        >>> fit.verdict, bool(abs(np.diag(fit.parameters["J"]) - [1, 2, 2.5]).max() < 0.01)
+        ('converged', True)
+        """
+        return estimate(self, step=step, readings=readings, unknown=unknown, every=every, velocity=velocity, attitude=attitude,
+                        known=known, **rest)
 
     def ensemble(self, members: int, *, step: float = 0.01, **rest: Any) -> Ensemble:
         """Many motions drawn at random; see `liestep.Ensemble`."""

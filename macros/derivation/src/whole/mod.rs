@@ -10,7 +10,7 @@
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!
-//! The files depend on each other in one direction: `{step → {limit, certified}, collocation, directions} → tangent → constraints → writer →
+//! The files depend on each other in one direction: `{step → {limit, certified, reverse}, collocation, directions} → tangent → constraints → writer →
 //! {actions, solved} → factor → relations → {basis, matrix → values}`.
 
 mod actions;
@@ -23,6 +23,7 @@ mod factor;
 mod limit;
 mod matrix;
 mod relations;
+mod reverse;
 mod solved;
 mod step;
 mod tangent;
@@ -37,6 +38,7 @@ pub use collocation::Canonical;
 pub use constraints::constrained;
 pub use directions::in_directions;
 pub use factor::MatrixFactor;
+pub use reverse::pulled_back;
 pub use step::{Programs, Sizes, WholeStep};
 pub use values::{Value, Words};
 

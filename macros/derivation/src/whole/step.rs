@@ -219,7 +219,21 @@ impl WholeStep {
     /// The reason why there is no step.
     pub fn tangent(staged: &StagedDeclaration) -> Result<Program, StepRefusal> {
         let Self { programs, .. } = Self::of(staged)?;
-        Ok(Writer::of(staged)?.tangent(&programs.target, &programs.finish))
+        Ok(Writer::of(staged)?.tangent(&programs.target, &programs.finish, false))
+    }
+
+    /// Writes two derivatives of a step by state and constants, whose advected parameters have changes of their own. The
+    /// first is the tangent map along one direction, `(ζ⁺, δμ⁺, δw⁺)`, as [`tangent`](Self::tangent), with `δw` in the array
+    /// of next advected values and `δc` in that of factors. The second is its transpose: the derivatives of a scalar by `ζ`,
+    /// `μ`, `w` and `c` before the step, of those by `ζ⁺` in the array of velocities, by `μ⁺` in that of histories and by
+    /// `w⁺` in that of next advected values.
+    ///
+    /// # Errors
+    ///
+    /// The reason why there is no step.
+    pub fn derivatives(&self, staged: &StagedDeclaration) -> Result<[Program; 2], StepRefusal> {
+        let (writer, Programs { target, finish, .. }) = (Writer::of(staged)?, &self.programs);
+        Ok([writer.tangent(target, finish, true), writer.backwards(target, finish)])
     }
 }
 

@@ -2,11 +2,11 @@
 //! function theorem for the increment.
 //!
 //! A direction is a displacement `ζ` of the attitude, `g ← g exp ζ̂`, with a change `δμ` of the momentum; advected
-//! parameters change by `δw = −ζ·w`. With the residual `r(y, a, w)` of the momentum equation (2.7) in half the coordinates
+//! parameters change by `δw = −ζ·w`, or, with parameters and constants that change, too, by any `δw`. With the residual `r(y, a, w)` of the momentum equation (2.7) in half the coordinates
 //! `y` of the increment,
 //!
 //! ```text
-//! δy = −(∂r/∂y)⁻¹ (∂r/∂a δa + ∂r/∂w δw)      ζ⁺ = vee(F⁻¹ (ζ̂ F + δF))
+//! δy = −(∂r/∂y)⁻¹ (∂r/∂a δa + ∂r/∂w δw + ∂r/∂c δc)      ζ⁺ = vee(F⁻¹ (ζ̂ F + δF))
 //! ```
 //!
 //! Nothing is derived anew: the programs of the step are differentiated as they are written.
@@ -22,16 +22,26 @@ pub(super) type Dual = (Value, Value);
 
 impl Writer<'_> {
     /// The displacement and the change of the momentum after a step, of half, momentum and advected; a displacement before
-    /// it stands in the array of velocities, and a change of the momentum in that of histories.
-    pub(super) fn tangent(&self, target: &Program, finish: &Program) -> Program {
+    /// it stands in the array of velocities, and a change of the momentum in that of histories. If what is advected and the
+    /// constants have changes of their own, these stand in the arrays of next advected values and of factors, and the change of
+    /// what is advected follows.
+    pub(super) fn tangent(&self, target: &Program, finish: &Program, has_own_changes: bool) -> Program {
         let (mut words, n) = (Words::default(), self.dimension());
         let [zeta, changed] = [Array::Velocity, Array::History].map(|array| Value::inputs(array, n));
         let hats: Vec<Matrix> = self.factors.iter().map(|factor| factor.hat(&mut words, factor.own(&zeta))).collect();
         let turned: Vec<Value> = hats.iter().flat_map(|hat| hat.entries.iter().copied()).collect();
         let identity = self.factors.iter().flat_map(|factor| Matrix::identity(factor.size()).entries);
         let attitude: Vec<Dual> = identity.zip(turned.iter().copied()).collect();
-        let advected = self.moved(&mut words, &turned);
+        let changes = Value::inputs(Array::Next, self.carried);
+        let advected = if has_own_changes {
+            Value::inputs(Array::Advected, self.carried).into_iter().zip(changes).collect()
+        } else {
+            self.moved(&mut words, &turned)
+        };
         let read = |source: Source| match source.array {
+            Array::Constants if has_own_changes => {
+                (Value::Input(source), Value::Input(Source::new(Array::Factors, source.at)))
+            }
             Array::Momentum => (Value::Input(source), changed[source.at]),
             Array::Advected => advected[source.at],
             Array::Attitude => attitude[source.at],
@@ -58,7 +68,8 @@ impl Writer<'_> {
             let turn = inverse.times(&mut words, &part(|dual| dual.1));
             all.extend(factor.vee(&mut words, &turn));
         }
-        all.extend(end[self.entries..self.entries + n].iter().map(|dual| dual.1));
+        let rest = if has_own_changes { n + self.carried } else { n };
+        all.extend(end[self.entries..self.entries + rest].iter().map(|dual| dual.1));
         words.program(&all)
     }
 
@@ -126,7 +137,7 @@ pub(super) fn along(words: &mut Words, program: &Program, input: &dyn Fn(Source)
 }
 
 /// The derivative of a function at `x`, where it has this value.
-fn slope(words: &mut Words, function: Function, x: Value, value: Value) -> Value {
+pub(super) fn slope(words: &mut Words, function: Function, x: Value, value: Value) -> Value {
     let half = Value::of(0.5);
     match function {
         Function::Sqrt => words.divide(half, value),

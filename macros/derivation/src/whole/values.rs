@@ -180,20 +180,25 @@ impl Words {
         a.iter().zip(b).map(|(&a, &b)| self.subtract(a, b)).collect()
     }
 
+    /// The result of an operation on these operands.
+    pub(super) fn operation<R>(&mut self, operation: Operation<R>, [a, b]: [Value; 2]) -> Value {
+        match operation {
+            Operation::Negate(_) => self.negate(a),
+            Operation::Add(..) => self.add(a, b),
+            Operation::Subtract(..) => self.subtract(a, b),
+            Operation::Multiply(..) => self.multiply(a, b),
+            Operation::Divide(..) => self.divide(a, b),
+            Operation::Apply(function, _) => self.apply(function, a),
+        }
+    }
+
     /// Adds the operations of a program with these inputs; returns its outputs.
     pub fn append(&mut self, program: &Program, input: impl Fn(Source) -> Value) -> Vec<Value> {
         let literals = program.literals.iter().map(|&literal| Value::of(literal));
         let mut values: Vec<Value> = program.inputs.iter().map(|&source| input(source)).chain(literals).collect();
         for &operation in &program.operations {
-            let [a, b] = operation.operands().map(|at| values[at]);
-            values.push(match operation {
-                Operation::Negate(_) => self.negate(a),
-                Operation::Add(..) => self.add(a, b),
-                Operation::Subtract(..) => self.subtract(a, b),
-                Operation::Multiply(..) => self.multiply(a, b),
-                Operation::Divide(..) => self.divide(a, b),
-                Operation::Apply(function, _) => self.apply(function, a),
-            });
+            let operands = operation.operands().map(|at| values[at]);
+            values.push(self.operation(operation, operands));
         }
         program.outputs.iter().map(|&at| values[at as usize]).collect()
     }
