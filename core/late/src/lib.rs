@@ -2,7 +2,7 @@
 //!
 //! # Inside
 //!
-//! `{compiled, latex, written} → declaration → sum → error` and `declaration → code → error`: a [`Declaration`] is the
+//! `{compiled, latex} → declaration → sum → error`, `written → {declaration, whole}` and `declaration → code → error`: a [`Declaration`] is the
 //! derivation of a text, with its stages as straight-line programs, or the `sum` of several. A [`Backend`] runs programs:
 //! [`Interpreter`] here, machine code in `liestep-machine`. `whole → declaration` makes the steps of any declaration on any
 //! group, with slices of numbers for states: [`Whole`].
@@ -28,4 +28,4 @@ pub use whole::{
     BackendInLanes, Between, Course, Paced, Question, QuestionError, Signal, SignalError, Transition, Varied, Whole,
     WholeError, for_accuracy, stepper,
 };
-pub use written::{c, constant, gpu, header, is_exact, javascript, prefix, rust};
+pub use written::{c, constant, gpu, header, is_exact, javascript, numbered, prefix, rust};

@@ -1,9 +1,11 @@
 //! The program `liestep`, and through it the library of scenes.
 
 mod called;
+mod computed;
 mod conventions;
 mod devices;
 mod ensembles;
+mod firmware;
 mod groups;
 mod import;
 mod joints;
@@ -22,4 +24,5 @@ mod several;
 mod signals;
 mod sums;
 mod systems;
+mod units;
 mod wrong_files;

@@ -1,4 +1,4 @@
-//! What a whole step is written from, in any language.
+//! The parts of a whole step that every language writes.
 
 use liestep::__private::{log_ratio_series, stumpff_series};
 use liestep_derivation::whole::{MatrixFactor, Programs, WholeStep};
