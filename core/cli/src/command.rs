@@ -87,6 +87,13 @@ pub(crate) fn command() -> Command {
                 .arg(flag("js", "A step in JavaScript"))
                 .group(ArgGroup::new("form").args(["latex", "rust", "c", "header", "gpu", "js", "certificate"]).requires("NAME")),
         )
+        .subcommand(
+            Command::new("fmu")
+                .about("Writes scenes as units of other simulations, FMI 3.0 for co-simulation: the source, and a binary where `cc` is")
+                .arg(scenes())
+                .arg(flag("fmi2", "FMI 2.0, whose variables are numbers"))
+                .arg(out()),
+        )
         .subcommand(import())
         .subcommand(
             Command::new("replay")

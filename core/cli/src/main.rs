@@ -11,6 +11,7 @@ mod command;
 mod ensemble;
 mod failure;
 mod files;
+mod fmu;
 mod members;
 mod output;
 mod sweep;
@@ -50,6 +51,7 @@ fn answer(matches: &ArgMatches) -> Result<(), Failure> {
         Some(("ensemble", given)) => ensemble::ensemble(given, false),
         Some(("report", given)) => ensemble::ensemble(given, true),
         Some(("derive", given)) => derive(given),
+        Some(("fmu", given)) => fmu::fmu(given),
         Some(("import", given)) => import(given),
         Some(("replay", given)) => replay(given),
         Some(("completions", given)) => command::complete(given),

@@ -5,8 +5,13 @@ use std::collections::BTreeMap;
 use liestep_derivation::whole::{Value, WholeStep, Words};
 use liestep_derivation::{Array, Program, Source};
 
-/// The programs by their names; none for one that the step doesn't have.
-pub(crate) type Emitted = Vec<(&'static str, Option<Program>)>;
+/// The programs of a step in a text.
+pub(crate) struct Emitted {
+    /// The programs by their names; none for one that the step doesn't have.
+    pub(crate) programs: Vec<(&'static str, Option<Program>)>,
+    /// The place of each constant among all constants of the step.
+    pub(crate) constants: Vec<usize>,
+}
 
 /// The programs of a step, `newton` the system for a solve with care, and more of its programs. Constants that none of them
 /// reads, as those of derivatives, are left out, and those that only the additional programs read come last.
@@ -40,7 +45,8 @@ pub(crate) fn emitted(step: &WholeStep, more: &[(&'static str, &Program)]) -> Em
     let constants = words.append(&all.constants, Value::Input);
     let mut read: Vec<(usize, usize)> = places.iter().map(|(&at, &place)| (place, at)).collect();
     read.sort_unstable();
-    let read: Vec<Value> = read.into_iter().map(|(_, at)| constants[at]).collect();
+    let kept: Vec<usize> = read.into_iter().map(|(_, at)| at).collect();
+    let read: Vec<Value> = kept.iter().map(|&at| constants[at]).collect();
     let moved = |program: &Program| {
         let inputs = program.inputs.iter().map(|&source| match source.array {
             Array::Constants => Source::new(Array::Constants, places[&source.at]),
@@ -49,7 +55,8 @@ pub(crate) fn emitted(step: &WholeStep, more: &[(&'static str, &Program)]) -> Em
         Program { inputs: inputs.collect(), ..program.clone() }
     };
     let others = others.into_iter().chain(more).map(|(name, program)| (name, program.map(moved)));
-    [("constants", Some(words.program(&read)))].into_iter().chain(others).collect()
+    let programs = [("constants", Some(words.program(&read)))].into_iter().chain(others).collect();
+    Emitted { programs, constants: kept }
 }
 
 /// The name of an array in a text.

@@ -2,7 +2,7 @@
 //!
 //! # Inside
 //!
-//! `{compiled, latex, certificate → written → emitted} → declaration → sum → error` and `declaration → code → error`: a [`Declaration`] is the
+//! `{latex, certificate} → emitted`, `compiled → declaration → sum → error`, `written → {emitted, whole}` and `declaration → code → error`: a [`Declaration`] is the
 //! derivation of a text, with its stages as straight-line programs, or the `sum` of several. A [`Backend`] runs programs:
 //! [`Interpreter`] here, machine code in `liestep-machine`. `whole → declaration` makes the steps of any declaration on any
 //! group, with slices of numbers for states: [`Whole`].
@@ -31,4 +31,4 @@ pub use whole::{
     BackendInLanes, Between, Course, Derivatives, Direction, Gradient, Paced, Question, QuestionError, Reading, Row,
     Signal, SignalError, Steered, Transition, Varied, Whole, WholeError, for_accuracy, stepper,
 };
-pub use written::{c, constant, gpu, header, is_exact, javascript, prefix, rust};
+pub use written::{c, constant, gpu, header, is_exact, javascript, numbered, prefix, rust};

@@ -44,4 +44,5 @@ pub use run::course::{BodyIntegrator, MemberEvent, MemberStart};
 pub use run::data::Whole;
 pub use run::make::{Happening, Run};
 pub use show::derivation::{Form, declaration, derivation, derived, written};
+pub use show::fmu::{Fmi, Fmu, archive};
 pub use show::recording::Recording;

@@ -2,9 +2,11 @@
 
 mod called;
 mod certificates;
+mod computed;
 mod conventions;
 mod devices;
 mod ensembles;
+mod firmware;
 mod groups;
 mod import;
 mod joints;
@@ -24,4 +26,5 @@ mod several;
 mod signals;
 mod sums;
 mod systems;
+mod units;
 mod wrong_files;

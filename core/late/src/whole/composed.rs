@@ -159,6 +159,12 @@ impl Stages {
         self.is_single().then_some(1.0).into_iter().chain(self.list.iter().map(|stage| stage.gamma))
     }
 
+    /// The constants of each stage, with its length as a fraction of the step.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = (f64, &StepConstants)> {
+        let single = self.is_single().then(|| (1.0, self.first()));
+        single.into_iter().chain(self.list.iter().map(|stage| (stage.gamma, &self.constants[stage.constants])))
+    }
+
     /// Whether it is a single step.
     pub(super) const fn is_single(&self) -> bool {
         self.list.is_empty()

@@ -154,6 +154,13 @@ impl<B: Backend<f64>> Whole<B> {
         &self.numbers
     }
 
+    /// The stages of a step: the fraction of the step that each takes; its length, the determinant above which a Jacobian serves
+    /// twice, and the square of the largest right side; its constants.
+    pub(crate) fn stage_numbers(&self) -> impl Iterator<Item = (f64, [f64; 3], &[f64])> {
+        let stages = self.stages.numbers();
+        stages.map(|(gamma, of)| (gamma, [of.h, of.safe, of.largest_target], of.numbers.as_slice()))
+    }
+
     /// The method.
     #[must_use]
     pub const fn method(&self) -> Method {

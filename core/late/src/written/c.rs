@@ -11,6 +11,7 @@ use super::language::Language;
 use super::parts::Parts;
 use crate::declaration::Declaration;
 use crate::error::LateError;
+use crate::whole::Whole;
 
 /// A dialect of C, as far as its text differs from another's.
 struct Dialect {
@@ -102,6 +103,41 @@ pub fn header(declaration: &Declaration) -> Result<String, LateError> {
     Ok(C99.text(&filled(&parts, head), &prefix(declaration)))
 }
 
+/// The texts that follow [`header`] and [`c`] where the numbers are known: the stepper of each stage as a constant, which needs no
+/// memory that is written, and functions for the start, at an attitude with a momentum and the velocity that it determines, and
+/// for a step.
+///
+/// # Errors
+///
+/// The errors of [`c`].
+pub fn numbered(whole: &Whole, start: [&[f64]; 3]) -> Result<[String; 2], LateError> {
+    let parts = Parts::of(whole.declaration())?;
+    // A bound may be infinite.
+    let number = |number: f64| if number.is_finite() { format!("{number:?}") } else { "INFINITY".to_owned() };
+    let list = |numbers: &[f64]| {
+        let numbers: Vec<String> = numbers.iter().map(|one| number(*one)).collect();
+        if numbers.is_empty() { "0.0".to_owned() } else { numbers.join(", ") }
+    };
+    let (mut steppers, mut gammas) = (Vec::new(), Vec::new());
+    for (gamma, bounds, constants) in whole.stage_numbers() {
+        steppers.push(format!(
+            "{{{}, {{{}}}, {{{}}}}}",
+            list(&bounds),
+            list(whole.numbers()),
+            list(&parts.constants(constants))
+        ));
+        gammas.push(gamma);
+    }
+    let [attitude, momentum, velocity] = start.map(list);
+    let next = if gammas.len() == 1 { "$step($stages, state)" } else { "$compose($stages, $gamma, @STAGES, state)" };
+    Ok([NUMBERED_HEAD, NUMBERED].map(|text| {
+        let text = text.replace("STEPPERS", &steppers.join(",\n    ")).replace("GAMMAS", &list(&gammas));
+        let text = text.replace("STAGE_COUNT", &gammas.len().to_string()).replace("NEXT", next);
+        let text = text.replace("ATTITUDE", &attitude).replace("MOMENTUM", &momentum).replace("VELOCITY", &velocity);
+        C99.text(&text, &prefix(whole.declaration()))
+    }))
+}
+
 /// A step of many members as one text in OpenCL C, CUDA and C99, with two kernels: the start and so many steps.
 ///
 /// # Errors
@@ -186,6 +222,8 @@ const LOG_RATIO: &str = include_str!("c/log_ratio.c");
 const STEP: &str = include_str!("c/step.c");
 const COMPOSITION: &str = include_str!("c/composition.c");
 const LIMIT: &str = include_str!("c/limit.c");
+const NUMBERED: &str = include_str!("c/numbered.c");
+const NUMBERED_HEAD: &str = include_str!("c/numbered.h");
 const KERNELS: &str = include_str!("gpu/kernels.c");
 const COMPOSED: &str = "   int $compose(const $stepper *stages, const double *gamma, int count, $state *);
        a step h of a symmetric composition: `stages[k]` is made for gamma[k] h, and a start with the first

@@ -11,8 +11,8 @@ use crate::declaration::Declaration;
 use crate::error::LateError;
 
 /// A step in JavaScript, with the functions of [`c`](super::c): one constant, `heavyTopStep` of `HeavyTop`, which is also what
-/// a module exports. It loads nothing. Where a step has no sine, cosine, exponential or logarithm it has the bits of the
-/// library, and the first line of the text says so; the others are those of the engine.
+/// a module exports. The text loads nothing. A step without sine, cosine, exponential and logarithm, which are those of the
+/// engine, has the bits of the library, and the first line of the text says so.
 ///
 /// # Errors
 ///
@@ -34,7 +34,7 @@ pub fn javascript(declaration: &Declaration) -> Result<String, LateError> {
     }
     for (name, program) in parts.programs() {
         let body = program.map_or(String::new(), |program| Language::JavaScript.body(program));
-        let _ = write!(text, "function {name}(given, outputs) {{\n{body}}}\n");
+        let _ = write!(text, "function {name}(given, to) {{\n{body}}}\n");
     }
     let matrices = parts.step.factors.iter().map(|factor| format!("[{}, {}]", factor.entry, factor.size()));
     text += &STEP

@@ -16,15 +16,6 @@ pub(super) enum Language {
 }
 
 impl Language {
-    /// The beginning of a statement that names a number.
-    const fn named(self) -> &'static str {
-        match self {
-            Self::Rust => "let",
-            Self::C => "const double",
-            Self::JavaScript => "const",
-        }
-    }
-
     /// The name of an array. `half` is a type of OpenCL C.
     pub(super) const fn array(self, array: Array) -> &'static str {
         match array {
@@ -35,11 +26,7 @@ impl Language {
 
     /// A number of an array.
     fn entry(self, array: Array, at: usize) -> String {
-        let inputs = match self {
-            Self::Rust => "",
-            Self::C => "in->",
-            Self::JavaScript => "given.",
-        };
+        let inputs = if self == Self::C { "in->" } else { "" };
         let name = self.array(array);
         if array == Array::Step { format!("{inputs}{name}") } else { format!("{inputs}{name}[{at}]") }
     }
@@ -77,15 +64,31 @@ impl Language {
             Operation::Divide(a, b) => format!("x{a} / x{b}"),
             Operation::Apply(function, a) => self.applied(function, a),
         });
+        let named = values.chain(literals).chain(operations).enumerate();
+        if self == Self::JavaScript {
+            return in_few_letters(program, named.map(|(at, value)| format!("x{at}={}", value.replace(' ', ""))));
+        }
+        let declared = if self == Self::C { "const double" } else { "let" };
         let mut text = String::new();
-        for (at, value) in values.chain(literals).chain(operations).enumerate() {
-            let _ = writeln!(text, "    {} x{at} = {value};", self.named());
+        for (at, value) in named {
+            let _ = writeln!(text, "    {declared} x{at} = {value};");
         }
         for (at, output) in program.outputs.iter().enumerate() {
             let _ = writeln!(text, "    outputs[{at}] = x{output};");
         }
         text
     }
+}
+
+/// The statements of a program as a page has them, whose weight is that of its programs.
+fn in_few_letters(program: &Program, named: impl Iterator<Item = String>) -> String {
+    let mut arrays: Vec<&str> = program.inputs.iter().map(|one| Language::JavaScript.array(one.array)).collect();
+    arrays.sort_unstable();
+    arrays.dedup();
+    let named: Vec<String> = named.collect();
+    let outputs = program.outputs.iter().enumerate().map(|(at, output)| format!("to[{at}]=x{output};"));
+    let constants = if named.is_empty() { String::new() } else { format!("const {};\n", named.join(",\n")) };
+    format!("const {{{}}}=given;\n{constants}{}\n", arrays.join(","), outputs.collect::<String>())
 }
 
 /// The functions of a program that no language has.

@@ -11,6 +11,6 @@ mod language;
 mod parts;
 mod rust;
 
-pub use c::{c, gpu, header, prefix};
+pub use c::{c, gpu, header, numbered, prefix};
 pub use javascript::{constant, is_exact, javascript};
 pub use rust::rust;

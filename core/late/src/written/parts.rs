@@ -1,4 +1,4 @@
-//! What a whole step is written from, in any language.
+//! The parts of a whole step that every language writes.
 
 use liestep::__private::{log_ratio_series, stumpff_series};
 use liestep_derivation::whole::{MatrixFactor, Programs, WholeStep};
@@ -13,7 +13,7 @@ use crate::error::LateError;
 pub(super) struct Parts<'a> {
     pub(super) declaration: &'a Declaration,
     pub(super) step: WholeStep,
-    programs: Emitted,
+    emitted: Emitted,
 }
 
 impl<'a> Parts<'a> {
@@ -21,16 +21,16 @@ impl<'a> Parts<'a> {
         let step = WholeStep::of(declaration)?;
         let Programs { velocity, momentum, energy, .. } = &step.programs;
         let limit = [("velocity_of", velocity), ("momentum_of", momentum), ("energy_of", energy)];
-        let mut programs = emitted(&step, if has_limit(&step) { &limit } else { &[] });
+        let mut emitted = emitted(&step, if has_limit(&step) { &limit } else { &[] });
         // A text refuses steps that take special care.
-        programs.retain(|(name, _)| *name != "newton");
-        for (name, _) in &mut programs {
+        emitted.programs.retain(|(name, _)| *name != "newton");
+        for (name, _) in &mut emitted.programs {
             // A driver has a variable of this name.
             if *name == "defect" {
                 *name = "defect_of";
             }
         }
-        Ok(Self { declaration, step, programs })
+        Ok(Self { declaration, step, emitted })
     }
 
     /// Whether the velocity of a momentum and the energy are programs: where the continuous limit is quadratic.
@@ -40,7 +40,12 @@ impl<'a> Parts<'a> {
 
     /// The programs that a step calls, by the names of their functions; those that a declaration lacks are empty.
     pub(super) fn programs(&self) -> impl Iterator<Item = (&'static str, Option<&Program>)> {
-        self.programs.iter().map(|(name, program)| (*name, program.as_ref()))
+        self.emitted.programs.iter().map(|(name, program)| (*name, program.as_ref()))
+    }
+
+    /// The constants that the programs read, of all constants of a step.
+    pub(super) fn constants(&self, all: &[f64]) -> Vec<f64> {
+        self.emitted.constants.iter().map(|&at| all[at]).collect()
     }
 
     /// The number of outputs of a program, at least one, as no language has an array of none.

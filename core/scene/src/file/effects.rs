@@ -7,7 +7,7 @@ use liestep::mechanics::{Effect, Inertia};
 use liestep_late::numbers;
 use serde::Deserialize;
 
-use crate::file::orbit::{AirInTime, DirectionInTime, FieldInTime, Nadir, Parameter as _, Time, VectorInTime};
+use crate::file::orbit::{AirInTime, DirectionInTime, FieldInTime, Nadir, Parameter, Time, VectorInTime};
 use crate::file::quantity;
 use crate::file::quantity::{
     Acceleration, Damping, Direction, Force, GravitationalParameter, Length, MagneticGain, MagneticMoment, Mass,
@@ -80,6 +80,8 @@ pub(crate) struct EffectEntry {
     pub(crate) key: &'static str,
     /// The effect's derivation, and the text of its declaration.
     pub(crate) derived: (&'static str, &'static str),
+    /// The keys of its parameters with their SI units; none of a direction, whose length is one.
+    pub(crate) units: &'static [(&'static str, Option<&'static str>)],
 }
 
 impl EffectEntry {
@@ -130,6 +132,7 @@ macro_rules! tables {
         pub(crate) const EFFECTS: &[EffectEntry] = &[$(EffectEntry {
             key: stringify!($name),
             derived: (<$effect as Effect>::DERIVATION, <$effect as Effect>::DECLARATION),
+            units: &[$((stringify!($field), <$type as Parameter>::UNIT)),+],
         }),+];
     };
 }

@@ -105,6 +105,9 @@ impl FieldInTime {
 
 /// A parameter of an effect.
 pub(crate) trait Parameter {
+    /// The SI unit of each number, where the numbers may have any values.
+    const UNIT: Option<&'static str> = None;
+
     /// Whether the parameter varies along the orbit.
     fn is_on_orbit(&self) -> bool {
         false
@@ -122,28 +125,47 @@ pub(crate) fn put(place: Option<&mut f64>, value: Option<f64>) -> bool {
     place.zip(value).map(|(place, value)| *place = value).is_some()
 }
 
+/// The SI unit of a quantity.
+const fn si<Q: Quantity>() -> Option<&'static str> {
+    match Q::UNITS {
+        [(unit, _), ..] => Some(unit),
+        [] => None,
+    }
+}
+
 impl<Q: Quantity> Parameter for Scalar<Q> {
+    const UNIT: Option<&'static str> = si::<Q>();
+
     fn put(&mut self, _: usize, number: f64, unit: &str) -> bool {
         put(Some(&mut self.value), in_si::<Q>(number, unit))
     }
 }
 
 impl<Q: Quantity> Parameter for PositiveScalar<Q> {
+    const UNIT: Option<&'static str> = si::<Q>();
+
     fn put(&mut self, _: usize, number: f64, unit: &str) -> bool {
         put(Some(&mut self.value), in_si::<Q>(number, unit).filter(|&number| number > 0.0))
     }
 }
 
 impl<Q: Quantity> Parameter for Triple<Q> {
+    const UNIT: Option<&'static str> = si::<Q>();
+
     fn put(&mut self, component: usize, number: f64, unit: &str) -> bool {
         put(self.value.get_mut(component), in_si::<Q>(number, unit))
     }
 }
 
-impl<Q> Parameter for Option<Q> {}
+impl<P: Parameter> Parameter for Option<P> {
+    const UNIT: Option<&'static str> = P::UNIT;
+}
+
 impl Parameter for Direction {}
 
-impl<F, T> Parameter for VectorInTime<F, T> {
+impl<F: Parameter, T> Parameter for VectorInTime<F, T> {
+    const UNIT: Option<&'static str> = F::UNIT;
+
     fn is_on_orbit(&self) -> bool {
         matches!(self, Self::Turns(_))
     }

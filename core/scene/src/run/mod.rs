@@ -8,6 +8,7 @@ pub(crate) mod devices;
 mod ends;
 mod events;
 pub(crate) mod make;
+pub(crate) mod model;
 mod motors;
 mod nearest;
 mod scene;

@@ -11,6 +11,7 @@ use crate::file::joint::{Joint, Kind};
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::bodies::{Coil, Cord, HeavyBody};
+use crate::run::model::Model;
 
 /// A term's derivation, and the text of its declaration.
 type Derivation = (&'static str, &'static str);
@@ -99,7 +100,8 @@ impl SceneFile {
         listed.chain(own).collect::<Vec<_>>().join("\n")
     }
 
-    /// The derivation of the sum of all terms, in this form.
+    /// The derivation of the sum of all terms, in this form. In C it is followed by the scene's numbers, if its steps are equal
+    /// and its numbers constant.
     ///
     /// # Errors
     ///
@@ -107,7 +109,14 @@ impl SceneFile {
     pub fn written(&self, form: Form) -> Result<String, LateError> {
         let listed = self.terms().filter_map(|name| declaration(&name)).map(Declaration::parse);
         let own = self.own().map(|one| Ok(one.declaration));
-        form.of(Declaration::sum(&listed.chain(own).collect::<Result<Vec<_>, _>>()?)?)
+        let sum = Declaration::sum(&listed.chain(own).collect::<Result<Vec<_>, _>>()?)?;
+        let text = form.of(sum)?;
+        let numbers = matches!(form, Form::C | Form::Header).then(|| Model::of(self).ok()?.numbered()).flatten();
+        Ok(match (form, numbers) {
+            (Form::Header, Some([head, _])) => text + &head,
+            (_, Some(both)) => text + &both.concat(),
+            (_, None) => text,
+        })
     }
 
     /// The names of the body and the effects.

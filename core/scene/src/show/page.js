@@ -445,3 +445,5 @@ resize();
 // `#t=12.5` opens the page at that time.
 seek(start + (Number(new URLSearchParams(location.hash.slice(1)).get("t")) || 0));
 Object.assign(document.documentElement.dataset, { frames, charts: charts.length });
+// A page that no time is asked of starts by itself, unless motion is unwelcome.
+if (!location.hash.includes("t=") && !window.matchMedia("(prefers-reduced-motion: reduce)").matches) toggle();

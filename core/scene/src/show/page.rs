@@ -2,11 +2,14 @@
 //!
 //! The script uses no scene graph and no charting library, which would add megabytes to each page.
 
-use std::fmt::{self, Write as _};
+use std::fmt;
 
 use nalgebra::{Matrix3, SymmetricEigen, UnitQuaternion, Vector3};
 
 use crate::file::shape::Shape;
+use crate::run::model::Model;
+use crate::show::computed::CHANGE;
+use crate::show::text::Text;
 
 const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
@@ -35,6 +38,8 @@ pub(crate) struct Page<'a> {
     pub(crate) charts: &'a [Chart],
     /// Times in s, and names.
     pub(crate) events: &'a [(f64, String)],
+    /// The step and the start, where the page can compute the motion anew.
+    pub(crate) model: Option<&'a Model>,
 }
 
 /// A body, and its motion.
@@ -181,21 +186,10 @@ fn profile(cylinder: f64, has_caps: bool) -> Vec<[f64; 2]> {
     all
 }
 
-/// A text in a script, escaped so that it can't end the script.
-struct Text<'a>(&'a str);
-
-impl fmt::Display for Text<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_char('"')?;
-        for letter in self.0.chars() {
-            match letter {
-                '"' | '\\' | '<' | '>' | '&' | '\u{2028}' | '\u{2029}' => write!(f, "\\u{:04x}", u32::from(letter))?,
-                letter if letter.is_control() => write!(f, "\\u{:04x}", u32::from(letter))?,
-                letter => f.write_char(letter)?,
-            }
-        }
-        f.write_char('"')
-    }
+/// A script without its indentation and its lines of comments.
+fn light(script: &str) -> String {
+    let lines = script.lines().map(str::trim_start).filter(|line| !line.is_empty() && !line.starts_with("//"));
+    lines.flat_map(|line| [line, "\n"]).collect()
 }
 
 /// A text in a page, with its markup escaped.
@@ -284,6 +278,8 @@ impl fmt::Display for Page<'_> {
             }
             writeln!(f, "]}},")?;
         }
-        write!(f, "]}};\n{SCRIPT}</script>\n</body>\n</html>\n")
+        let script = self.model.and_then(|model| model.script(self.axis));
+        let (step, change) = script.as_ref().map_or(("", ""), |script| (&**script, CHANGE));
+        write!(f, "]}};\n{}</script>\n</body>\n</html>\n", light(&[step, SCRIPT, change].concat()))
     }
 }

@@ -12,6 +12,7 @@ use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::make::{Happening, Run};
+use crate::run::model::Model;
 use crate::show::page::{Chart, Figure, Page, ShownBody};
 
 /// A motion, with recorded quantities over time.
@@ -25,6 +26,7 @@ pub struct Recording {
     times: Vec<f64>,
     charts: Vec<Chart>,
     events: Vec<(f64, String)>,
+    model: Option<Model>,
 }
 
 /// Most bytes of a recording, which may be much larger than a scene.
@@ -119,7 +121,8 @@ impl Recording {
         }
         let bodies = vec![single(Figure::of(&Matrix3::identity(), None), attitudes)];
         let (title, about) = (title.to_owned(), about.to_owned());
-        Ok(Self { title, about, axis: Vector3::z(), bodies, rods: Vec::new(), times, charts, events: Vec::new() })
+        let (rods, events) = (Vec::new(), Vec::new());
+        Ok(Self { title, about, axis: Vector3::z(), bodies, rods, times, charts, events, model: None })
     }
 
     fn of(scene: &SceneFile, run: &Run) -> Self {
@@ -160,6 +163,9 @@ impl Recording {
             times: collect(&|sample| sample.time),
             charts,
             events: named_events(run, scene.events()),
+            model: Model::of(scene)
+                .ok()
+                .filter(|_| scene.group.is_rotation() && !scene.event.iter().any(|one| one.stops)),
         }
     }
 
@@ -187,6 +193,7 @@ impl Recording {
             times: samples.iter().map(|sample| sample.time).collect(),
             charts: charts_of_system(system, samples),
             events: named_events(run, system.events()),
+            model: None,
         }
     }
 
@@ -195,8 +202,8 @@ impl Recording {
     /// it has the quantities alone.
     #[must_use]
     pub fn page(&self) -> String {
-        let Self { title, about, axis, bodies, rods, times, charts, events } = self;
-        Page { title, about, axis, bodies, rods, times, charts, events }.to_string()
+        let Self { title, about, axis, bodies, rods, times, charts, events, model } = self;
+        Page { title, about, axis, bodies, rods, times, charts, events, model: model.as_ref() }.to_string()
     }
 }
 
