@@ -1,0 +1,118 @@
+"""Certificates: each operation of a step, changed alone, is refused, and so is another text."""
+
+from __future__ import annotations
+
+import copy
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from liestep.verify import verified
+from liestep.verify.claims import CLAIMS, Step, decided
+
+import liestep as ls
+
+J = [1, 2, 2.5]
+OTHER = {"+": "-", "-": "+", "*": "+", "/": "*"}
+
+
+def plate():
+    """A plate in a plane, tied to two points by springs."""
+    spring = "(a - p).norm_squared() + (a - F * p).norm_squared()"
+    return ls.lagrangian("SE2", advected={"a": "anchor"}, J=[[2, 0, 0], [0, 3, 0], [0, 0, 1]], k=3, p=[0.1, 0.2, 1], anchor=ls.point([1, 0]),
+                         l_d=f"((F - I) * J * (F - I).transpose()).trace() / (2 * h) - h * k * ({spring}) / 4")
+
+
+def needle():
+    """A sum of functions that aren't rational."""
+    return ls.body(J, kinetic="geodesic") + ls.lagrangian(
+        "SO3", advected={"w": "up"}, l_d="h * k * (w.dot(a).sin() + w.dot(F * a).sin() + w.dot(a).exp() + w.dot(F * a).exp() "
+        "+ (2 + w.dot(a)).ln() + (2 + w.dot(F * a)).ln() + w.dot(exp(b) * a) + w.dot(F * (exp(b) * a)))",
+        k=0.5, a=[0.1, 0.2, 0.3], b=[0.3, 0, 0.1], up=[0, 0, 1])
+
+
+SUMS = {
+    "a falling top": lambda: ls.body(J) + ls.gravity(m=0.5, rho=[0.1, 0.2, 0.3]) + ls.drag(c=0.3, J=J),
+    "a plate": plate,
+    "a needle": needle,
+}
+
+
+def data(name):
+    return json.loads(SUMS[name]().certificate)
+
+
+@pytest.mark.parametrize("name", SUMS)
+def test_a_certificate_is_accepted(name):
+    found = verified(data(name))
+    assert found and all(holds is True for holds in found.values()), found
+
+
+def mutants(certificate):
+    """Certificates with one operation changed: another sign, a sum for a product, a product for a quotient."""
+    for name, program in certificate["programs"].items():
+        for at, operation in enumerate(program["operations"]):
+            others = copy.copy(program["operations"])
+            if len(operation) == 3:
+                others[at] = [OTHER[operation[0]], *operation[1:]]
+            else:
+                others[at] = ["+", operation[1], operation[1]] if operation[0] == "-" else ["exp", operation[1]]
+            programs = certificate["programs"] | {name: program | {"operations": others}}
+            yield (name, at, operation), certificate | {"programs": programs}
+
+
+def accepts(certificate, program):
+    """Whether all claims hold; those of the changed program are asked first."""
+    step = Step(certificate)
+    order = sorted(certificate["claims"], key=lambda claim: claim["of"] != program)
+    for claim in order:
+        holds, step = decided(step, CLAIMS[claim["name"]])
+        if holds is not True:
+            return False
+    return True
+
+
+@pytest.mark.parametrize("name", ["a falling top", "a plate"])
+def test_each_operation_counts(name):
+    survived = [place for place, made in mutants(data(name)) if accepts(made, place[0])]
+    assert survived == []
+
+
+def test_functions_count():
+    """Each tenth operation of the needle's programs, and each function."""
+    tried = [(place, made) for place, made in mutants(data("a needle")) if place[1] % 10 == 0 or place[2][0].isidentifier()]
+    assert {place[2][0] for place, _ in tried} >= {"sin", "cos", "exp", "log_ratio_2", "sqrt", "+", "-", "*", "/"}
+    assert [place for place, made in tried if accepts(made, place[0])] == []
+
+
+@pytest.mark.parametrize(("text", "other", "wrong"), [
+    ("-0.5 * h * m", "0.5 * h * m", "residual"),
+    ("rho + F * rho", "rho + F.transpose() * rho", "momentum"),
+    ("eta * (c - end)", "eta * (c + end)", "residual"),
+    ("eta_next * end", "eta_next.norm_squared() * end * eta", "work"),
+])
+def test_another_text_is_refused(text, other, wrong):
+    certificate = data("a falling top")
+    texts = [" ".join(one.split()) for one in certificate["texts"]]
+    changed = [one.replace(text, other) for one in texts]
+    assert changed != texts
+    assert verified(certificate | {"texts": changed})[wrong] is False
+
+
+def test_what_has_no_rule_is_said():
+    certificate = data("a falling top")
+    changed = [one.replace("vee(F)", "vee(F.tanh())") for one in certificate["texts"]]
+    found = verified(certificate | {"texts": changed})
+    assert found["residual"] == "the method tanh"
+
+
+def test_the_checker_needs_nothing_else(tmp_path):
+    file = tmp_path / "top.json"
+    file.write_text(SUMS["a falling top"]().certificate)
+    folder = Path(ls.__file__).parent
+    alone = [sys.executable, "-S", "-c", "import runpy, sys; sys.path.insert(0, sys.argv.pop(1)); runpy.run_module('verify', run_name='__main__')"]
+    for command, path in [([sys.executable, "-m", "liestep.verify"], []), (alone, [str(folder)])]:
+        done = subprocess.run([*command, *path, str(file)], capture_output=True, text=True)
+        assert done.returncode == 0 and "18 of 18 claims hold" in done.stdout, done.stderr
