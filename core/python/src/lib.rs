@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 use liestep::with::Scheme;
 use liestep_ensemble::share_of;
-use liestep_late::{Declaration, Role};
+use liestep_late::Declaration;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
