@@ -2,7 +2,8 @@
 //!
 //! # Inside
 //!
-//! `{latex, certificate} → emitted`, `compiled → declaration → sum → error`, `written → {emitted, whole}` and `declaration → code → error`: a [`Declaration`] is the
+//! `{written → whole, certificate} → emitted → declaration`, `{compiled, latex} → declaration → sum → error` and `declaration → code →
+//! error`: a [`Declaration`] is the
 //! derivation of a text, with its stages as straight-line programs, or the `sum` of several. A [`Backend`] runs programs:
 //! [`Interpreter`] here, machine code in `liestep-machine`. `whole → declaration` makes the steps of any declaration on any
 //! group, with slices of numbers for states: [`Whole`].
