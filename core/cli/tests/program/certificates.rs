@@ -146,7 +146,7 @@ fn is_of_several(path: &Path) -> bool {
     fs::read_to_string(path).unwrap().contains("[[body]]")
 }
 
-/// The digest is that of the text in C, and a certificate with another operation is refused.
+/// Digest and statements are those of the text in C; another text in C and another declaration are refused.
 #[test]
 fn a_certificate_of_the_text_in_c() {
     if !has_python() {
@@ -158,8 +158,12 @@ fn a_certificate_of_the_text_in_c() {
         fs::write(folder.join(form), text).unwrap();
     }
     let files = ["certificate".to_owned()];
-    assert!(checked(&["--c", "c"], &files, &folder).contains("18 of 18 claims hold"));
+    assert!(checked(&["--c", "c"], &files, &folder).contains("19 of 19 claims hold"));
     assert!(checked(&["--c", "certificate"], &files, &folder).contains("digest: WRONG"));
+    let text = fs::read_to_string(folder.join("c")).unwrap();
+    let (before, behind) = text.split_once("static void finish").unwrap();
+    fs::write(folder.join("other"), format!("{before}static void finish{}", behind.replacen(" - x", " + x", 1))).unwrap();
+    assert!(checked(&["--c", "other"], &files, &folder).contains("statements: WRONG"));
     let right = fs::read_to_string(folder.join("certificate")).unwrap();
     let wrong = right.replace("trace() / (2.0 * h)", "trace() / (3.0 * h)");
     fs::write(folder.join("wrong"), &wrong).unwrap();

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .claims import verified
+from .printed import is_printed
 
 
 def row(name: str, data: dict[str, Any], found: dict[str, bool | str]) -> str:
@@ -29,7 +30,7 @@ def row(name: str, data: dict[str, Any], found: dict[str, bool | str]) -> str:
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m liestep.verify", description="Checks certificates of steps.")
     parser.add_argument("files", nargs="+", type=Path, help="what `liestep derive --certificate` has written")
-    parser.add_argument("--c", type=Path, help="a text in C, whose digest has to be that of the certificate")
+    parser.add_argument("--c", type=Path, help="a text in C: its digest and its statements have to be those of the certificate")
     parser.add_argument("--table", action="store_true", help="print the lines of a table in Markdown")
     given = parser.parse_args()
     is_right = True
@@ -37,7 +38,9 @@ def main() -> int:
         began, data = time.process_time(), json.loads(file.read_text(encoding="utf-8"))
         found = verified(data)
         if given.c:
-            found["digest"] = data["digests"]["c"] == "sha256:" + hashlib.sha256(given.c.read_bytes()).hexdigest()
+            text = given.c.read_bytes()
+            found["digest"] = data["digests"]["c"] == "sha256:" + hashlib.sha256(text).hexdigest()
+            found["statements"] = is_printed(data, text.decode())
         is_right &= all(holds is True for holds in found.values())
         if given.table:
             print(row(file.stem, data, found))

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from .field import (
-    HALF, ONE, ZERO, Declined, Dual, Matrix, Unlucky, column, dot, draw, drawn, functions, number, product, simplest, total,
+    HALF, ONE, ZERO, Declined, Dual, Matrix, Unlucky, column, dot, drawn, functions, number, product, simplest, total,
 )
 from .motion import Carried, Factor, Term, drawn_field, stored_kind
 from .text import long_decimals
@@ -91,7 +91,7 @@ class Step:
             raise Declined("other parameters")
         numbers = [drawn_field(one) for one in fields]
         self.stored, self.values = [entries for entries, _ in numbers], [value for _, value in numbers]
-        self.h = Dual(draw())
+        self.h = drawn(1)[0]
 
     def arrays(self, h: Dual, point: Point | None = None, **others: list[Dual]) -> Arrays:
         known: Arrays = {"h": [h], "parameters": sum(self.stored, [])}

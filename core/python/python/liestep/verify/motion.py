@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from .field import HALF, ONE, ZERO, Declined, Dual, Matrix, column, dot, draw, drawn, logarithm, number, product, total, turn
+from .field import HALF, ONE, ZERO, Declined, Dual, Matrix, column, dot, drawn, logarithm, number
 from .text import KINDS, Chord, Declaration, Field, valued
 
 
