@@ -17,7 +17,7 @@
 //! [`Propagator`](liestep::motion::Propagator). Methods of SO(3) alone are the library's own, by a scene that runs programs.
 //!
 //! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
-//! `methods → {collocation, rotating, density}`, `collocation → stepper`,
+//! `methods → {collocation, hamiltonian, rotating, density}`, `{collocation, hamiltonian} → stepper`,
 //! `{density → varied → course, pace} → {stepper, lengths}`,
 //! `inputs → {tangent → composed, limit}` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
 //! {codes, linear}`.
@@ -32,6 +32,7 @@ mod constants;
 mod course;
 mod density;
 mod diagnosis;
+mod hamiltonian;
 mod inputs;
 mod iteration;
 mod lengths;
