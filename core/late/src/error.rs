@@ -48,6 +48,9 @@ pub enum LateError {
     /// The sum has a declaration with a pace, whose energy is that of all terms.
     #[error("a Lagrangian with a pace has all its terms in its text")]
     Pace,
+    /// The sum has a Hamiltonian.
+    #[error("a Hamiltonian has all its terms in its text, and no Lagrangian or force beside it")]
+    Hamiltonian,
     /// The declaration is on another group.
     #[error("the declaration is on {declared}: take that group")]
     Group {

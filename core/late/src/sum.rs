@@ -149,6 +149,9 @@ pub(crate) fn summed(terms: &[&StagedDeclaration]) -> Result<StagedDeclaration, 
         let names: Vec<&str> = other.factors.iter().map(|factor| factor.name.as_str()).collect();
         return Err(LateError::Group { declared: names.join(", ") });
     }
+    if terms.iter().any(|staged| staged.role == Role::Hamiltonian) {
+        return Err(LateError::Hamiltonian);
+    }
     if terms.iter().any(|staged| staged.energy.is_some()) {
         return Err(LateError::Pace);
     }

@@ -51,7 +51,7 @@ impl<B: Backend<f64>> Codes<B> {
         };
         let operations =
             [length([&programs.iterate, &programs.again]) * 0.5, length([&programs.target, &programs.finish])];
-        let layout = layout(&sizes, &factors);
+        let layout = layout(sizes.carried, 3 * sizes.n, &factors);
         let mut folds = vec![false; declaration.count()];
         let inputs = [&programs.constants, &programs.rest].into_iter().flat_map(|program| &program.inputs);
         for source in inputs.filter(|source| source.array == Array::Parameters) {
@@ -122,7 +122,7 @@ pub(super) fn rare<B: Backend<f64>>(program: &Ready<B::Code>, constants: &[f64],
 }
 
 /// The names and places of a state's numbers.
-fn layout(sizes: &Sizes, factors: &[MatrixFactor]) -> Layout {
+pub(super) fn layout(carried: usize, memory: usize, factors: &[MatrixFactor]) -> Layout {
     let named = factors.iter().enumerate().map(|(place, factor)| {
         let kind = match factor.form {
             Form::Rotation => FactorKind::Rotation,
@@ -132,6 +132,6 @@ fn layout(sizes: &Sizes, factors: &[MatrixFactor]) -> Layout {
         let named = Factor::of(kind, factor.dimension());
         if factors.len() > 1 { named.at(place + 1) } else { named }
     });
-    let advected = (1..=sizes.carried).map(|number| format!("advected_{number}")).collect();
-    Layout { factors: named.collect(), advected, memory: 3 * sizes.n }
+    let advected = (1..=carried).map(|number| format!("advected_{number}")).collect();
+    Layout { factors: named.collect(), advected, memory }
 }

@@ -4,10 +4,12 @@ use liestep::accuracy::{Accuracy, AccuracyError, Candidate, Choice, choose, disp
 use liestep::motion::AnyStepper;
 use liestep::with::{Method, Scheme, Steppable as _};
 use liestep::{SO3, SetupError};
+use liestep_derivation::Role;
 use liestep_derivation::whole::Form;
 
 use super::codes::Codes;
 use super::collocation::Collocation;
+use super::hamiltonian::Hamiltonian;
 use super::rotating::RotatingScene;
 use super::stepper::{Whole, WholeError};
 use crate::code::Backend;
@@ -26,7 +28,8 @@ const fn refused<T>(cause: &'static str) -> Result<T, WholeError> {
 
 /// The stepper of a declaration with the [numbers](Declaration::numbers) of all its parameters, the step `h`, s, and a method.
 ///
-/// The declared step and its compositions are those of [`Whole`] on any group. Collocation takes the continuous limit of the
+/// The declared step and its compositions are those of [`Whole`] on any group; those of a Hamiltonian need a momentum at the
+/// start. Collocation takes the continuous limit of the
 /// Lagrangian, on any group that linear and quadratic relations define. Splittings, the exact motion and compensated sums are
 /// those of [`Method::stepper`], on SO(3) alone.
 ///
@@ -64,6 +67,9 @@ pub fn stepper<B: Backend<f64>>(
     h: f64,
     method: Method,
 ) -> Result<AnyStepper, WholeError> {
+    if declaration.role == Role::Hamiltonian {
+        return Ok(AnyStepper::new(Hamiltonian::<B>::of(declaration, numbers, h, method)?));
+    }
     if declaration.energy.is_some() {
         if method.is_plain() {
             return Ok(AnyStepper::new(Whole::<B>::of(declaration, numbers, h, method)?.paced()?));

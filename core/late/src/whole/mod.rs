@@ -17,7 +17,7 @@
 //! [`Propagator`](liestep::motion::Propagator). Methods of SO(3) alone are the library's own, by a scene that runs programs.
 //!
 //! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
-//! `methods → {collocation, rotating, density}`, `collocation → stepper`,
+//! `methods → {collocation, hamiltonian, rotating, density}`, `{collocation, hamiltonian} → stepper`,
 //! `steered → {plant, forwards}`, `{density, forwards → {derivatives → tape, tangent} → {varied → course, slopes → limit}, pace} → {stepper, lengths}`,
 //! `inputs → {tangent → composed, limit}` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
 //! {codes, linear}`.
@@ -34,6 +34,7 @@ mod density;
 mod derivatives;
 mod diagnosis;
 mod forwards;
+mod hamiltonian;
 mod inputs;
 mod iteration;
 mod lengths;

@@ -20,6 +20,8 @@ pub enum Role {
     Constraint,
     /// `#[nonholonomic(… zero = …)]`.
     Nonholonomic,
+    /// `#[hamiltonian(… h = …)]`, of texts alone.
+    Hamiltonian,
 }
 
 impl Role {
@@ -29,6 +31,7 @@ impl Role {
             Self::Lagrangian => "l_d",
             Self::Force => "work",
             Self::Constraint | Self::Nonholonomic => "zero",
+            Self::Hamiltonian => "h",
         }
     }
 
@@ -39,6 +42,7 @@ impl Role {
             Self::Force => "virtual work",
             Self::Constraint => "a constraint",
             Self::Nonholonomic => "a constraint on velocities",
+            Self::Hamiltonian => "a Hamiltonian",
         }
     }
 
@@ -48,6 +52,7 @@ impl Role {
             Self::Lagrangian => "the Lagrangian",
             Self::Force => "the virtual work",
             Self::Constraint | Self::Nonholonomic => "the constraint",
+            Self::Hamiltonian => "the Hamiltonian",
         }
     }
 
@@ -56,7 +61,7 @@ impl Role {
     pub fn reserved(self, is_product: bool) -> &'static [&'static str] {
         match self {
             Self::Force if !is_product => &["F", "I", "h", "hat", "vee", "log", "exp", "inverse", "eta", "eta_next"],
-            Self::Lagrangian | Self::Force | Self::Nonholonomic => {
+            Self::Lagrangian | Self::Force | Self::Nonholonomic | Self::Hamiltonian => {
                 &["F", "I", "h", "hat", "vee", "log", "exp", "inverse"]
             }
             // A constraint has no steps.
@@ -71,6 +76,7 @@ impl Role {
             Self::Force => "force",
             Self::Constraint => "constraint",
             Self::Nonholonomic => "nonholonomic",
+            Self::Hamiltonian => "hamiltonian",
         }
     }
 }
@@ -90,7 +96,8 @@ pub struct Declaration {
     /// The Lagrangian, the virtual work of a force, or a constraint; `None` where a mistake elsewhere hides its
     /// meaning.
     pub expression: Option<Expr>,
-    /// The velocities and the discretisation of a continuous Lagrangian `l`, or of a constraint on velocities.
+    /// The velocities and the discretisation of a continuous Lagrangian `l`, or of a constraint on velocities; the momenta of
+    /// a Hamiltonian.
     pub continuous: Option<Continuous>,
     /// The index of `E_0` among the advected and given parameters, if a pace has rewritten the expression.
     pub energy: Option<usize>,

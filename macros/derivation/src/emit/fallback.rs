@@ -26,7 +26,7 @@ fn stand_in(role: Role, arguments: TokenStream, item: &TokenStream) -> TokenStre
     let header = Header::new(&declaration);
     match role {
         Role::Constraint => constraint(&header),
-        Role::Lagrangian | Role::Force | Role::Nonholonomic => of_effect(&declaration, &header),
+        Role::Lagrangian | Role::Force | Role::Nonholonomic | Role::Hamiltonian => of_effect(&declaration, &header),
     }
 }
 
@@ -133,7 +133,7 @@ fn of_role(declaration: &Declaration, header: &Header) -> TokenStream {
                 }
             }
         }
-        Role::Force | Role::Constraint => {
+        Role::Force | Role::Constraint | Role::Hamiltonian => {
             let force = header.implementation("Force");
             quote_spanned! {span=>
                 #force {

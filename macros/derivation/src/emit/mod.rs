@@ -188,6 +188,11 @@ fn derivation_of(
     docs::derivation(declaration, chosen, texts, section, findings)
 }
 
+/// The Hamiltonian and its derivatives as text.
+pub(crate) fn text_of_hamiltonian(declaration: &Declaration, equations: &Equations) -> String {
+    continuous::text::of_hamiltonian(declaration, equations)
+}
+
 /// The equations of a step.
 fn equations_of(declaration: &Declaration, chosen: &Choice, equations: Option<&Equations>) -> Vec<docs::Equation> {
     let Choice { lowered, derived, .. } = chosen;

@@ -189,7 +189,7 @@ fn signature(declaration: &Declaration, header: &Header) -> TokenStream {
             /// The constraint as declared.
             fn zero(&self, velocity: &#vector, w: &Self::Advected) -> #scalar
         },
-        Role::Lagrangian | Role::Constraint => quote_spanned! {span=>
+        Role::Lagrangian | Role::Constraint | Role::Hamiltonian => quote_spanned! {span=>
             /// The Lagrangian as declared.
             fn l_d(&self, f: &#square, w: &Self::Advected, h: #scalar) -> #scalar
         },

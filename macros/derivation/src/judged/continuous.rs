@@ -8,7 +8,7 @@ use super::explain;
 use super::verify::{Motion, Sureness};
 use crate::declared::errors::Errors;
 use crate::declared::lower::Reading;
-use crate::declared::{Declaration, Name, Tree, lower};
+use crate::declared::{Declaration, Name, Role, Tree, lower};
 use crate::mathematics::derive::{self, Continuous, ContinuousSource, Inverse};
 use crate::mathematics::symbolic::{Rational, SymbolId};
 
@@ -92,7 +92,8 @@ fn checked(
     errors: &mut Errors,
 ) -> Option<Equations> {
     let motion = Motion::new(declaration, Some(tree).filter(|_| chosen.is_none()), &names, &derived);
-    if chosen.is_none() && derived.has_kinetic() {
+    // A Hamiltonian needs no velocity that has a momentum.
+    if chosen.is_none() && derived.has_kinetic() && declaration.role != Role::Hamiltonian {
         explain::continuous_kinetic_part(&motion.kinetic_part(), declaration, errors)?;
     }
     let sureness = motion.holds();

@@ -21,19 +21,13 @@ pub(super) fn staged(declaration: &Declaration, steps: &Steps) -> StagedDeclarat
     let alone = |(graph, outputs): &Outputs| self::program(graph, &sources, none, outputs);
     let derived_term = |form, expression| alone(&kernel.beginning.term(derived, form, expression));
     let (limit_graph, at_rest) = kernel.beginning.limit(derived);
-    let generators = |factor: &crate::mathematics::group::Group| {
-        factor.generators.iter().map(|one| one.iter().map(|entry| entry.to_f64()).collect()).collect()
-    };
-    let factors = declaration.factors.iter().zip(declaration.group.factors());
     let is_nonlinear = |equations: &&Equations| equations.derived.inverse == Inverse::Nonlinear;
     let reaction = alone(&(limit_graph.clone(), at_rest[1].clone()));
     let whole = StagedDeclaration {
         name: declaration.item.ident.to_string(),
         role: declaration.role,
-        factors: factors.map(|(named, own)| Factor { name: named.group_name(), generators: generators(own) }).collect(),
-        parameters: (declaration.fields.iter())
-            .map(|field| Parameter { name: field.plain_name(), kind: parameter_kind(field.kind) })
-            .collect(),
+        factors: factors(declaration),
+        parameters: parameters(declaration),
         carried: (0..declaration.advected.len()).map(|index| carried(declaration, index)).collect(),
         energy: declaration.energy,
         derivation: emit::text(declaration, chosen, equations.as_ref(), findings),
@@ -81,6 +75,45 @@ fn at_velocity(declaration: &Declaration, equations: &Equations) -> [Program; 3]
         program(&graph, &sources, &Handover::new(), &outputs)
     };
     [of_rank(0, &derived.lagrangian), of_rank(1, &derived.momentum), of_rank(2, &derived.hessian)]
+}
+
+/// The factors of the group.
+fn factors(declaration: &Declaration) -> Vec<Factor> {
+    let generators = |factor: &crate::mathematics::group::Group| {
+        factor.generators.iter().map(|one| one.iter().map(|entry| entry.to_f64()).collect()).collect()
+    };
+    let factors = declaration.factors.iter().zip(declaration.group.factors());
+    factors.map(|(named, own)| Factor { name: named.group_name(), generators: generators(own) }).collect()
+}
+
+fn parameters(declaration: &Declaration) -> Vec<Parameter> {
+    let fields = declaration.fields.iter();
+    fields.map(|field| Parameter { name: field.plain_name(), kind: parameter_kind(field.kind) }).collect()
+}
+
+/// The programs of a Hamiltonian, which has no Lagrangian and no momentum equation of its own.
+pub(super) fn hamiltonian(declaration: &Declaration, equations: &Equations) -> StagedDeclaration {
+    let n = declaration.group.dimension();
+    StagedDeclaration {
+        name: declaration.item.ident.to_string(),
+        role: declaration.role,
+        factors: factors(declaration),
+        parameters: parameters(declaration),
+        carried: (0..declaration.advected.len()).map(|index| carried(declaration, index)).collect(),
+        energy: None,
+        derivation: emit::text_of_hamiltonian(declaration, equations),
+        has_kinetic: true,
+        has_force: false,
+        parts: [false; 3],
+        denominators: 0,
+        has_constant_inertia: false,
+        is_quadratic: false,
+        is_self_adjoint: true,
+        in_increment: true,
+        blocks: Vec::new(),
+        constraints: Constraints::default(),
+        programs: Stages { at_velocity: Some(at_velocity(declaration, equations)), ..Stages::zeros(n) },
+    }
 }
 
 /// The program of these outputs, which reads these constants.

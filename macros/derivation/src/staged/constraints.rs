@@ -48,19 +48,26 @@ impl StagedDeclaration {
             is_quadratic: true,
             blocks: Vec::new(),
             constraints: Constraints { each: vec![constraint], ..Constraints::default() },
-            programs: Stages {
-                constants: constants.0,
-                kick_before: zeros(n),
-                newton_system: zeros(n + n * n),
-                newton_residual: zeros(n),
-                kick_after: zeros(n),
-                kick_derivative: None,
-                momentum_jacobian: zeros(n * n),
-                at_rest: zeros(n * n + n + 1),
-                at_velocity: None,
-                lagrangian: None,
-            },
+            programs: Stages { constants: constants.0, ..Stages::zeros(n) },
             ..self
+        }
+    }
+}
+
+impl Stages<Program> {
+    /// The programs of a declaration that is no part of a momentum equation of this dimension.
+    pub(super) fn zeros(n: usize) -> Self {
+        Self {
+            constants: zeros(0),
+            kick_before: zeros(n),
+            newton_system: zeros(n + n * n),
+            newton_residual: zeros(n),
+            kick_after: zeros(n),
+            kick_derivative: None,
+            momentum_jacobian: zeros(n * n),
+            at_rest: zeros(n * n + n + 1),
+            at_velocity: None,
+            lagrangian: None,
         }
     }
 }

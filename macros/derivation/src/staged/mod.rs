@@ -258,7 +258,8 @@ pub struct Stages<P> {
     pub momentum_jacobian: P,
     /// The inertia, the bias and the potential at rest.
     pub at_rest: P,
-    /// The continuous limit at a velocity, if it isn't quadratic: `l`, momentum and Hessian.
+    /// The continuous limit at a velocity, if it isn't quadratic: `l`, momentum and Hessian. Of a Hamiltonian `h`, velocity and
+    /// Hessian at a momentum, in the array of velocities.
     pub at_velocity: Option<[P; 3]>,
     /// The terms of a Lagrangian by `F`, `w` and `h`: `l_d`, right and left momentum, diamond, `legendre_minus` and
     /// discrete energy.
@@ -350,7 +351,7 @@ pub enum Refusal {
 /// by the Cayley map, takes three quarters of it.
 pub const MOST_WORK: u64 = 6_000_000;
 
-/// Derives a struct with `#[lagrangian(…)]`, `#[force(…)]` or `#[nonholonomic(…)]` and verifies the derivation, as the macro does, within a
+/// Derives a struct with `#[lagrangian(…)]`, `#[force(…)]`, `#[nonholonomic(…)]` or `#[hamiltonian(…)]` and verifies the derivation, as the macro does, within a
 /// limit on work: products of terms, terms that become programs, and their operations. Returns also the work done.
 ///
 /// # Errors
@@ -372,6 +373,9 @@ fn of_text(text: &TokenStream, errors: &mut Errors) -> Option<StagedDeclaration>
     let declaration = Declaration { is_text: true, gradients: None, ..declaration };
     match expand::judged(&declaration, errors)? {
         Judgement::Steps(steps) => Some(build::staged(&declaration, &steps)),
+        Judgement::Continuous(equations) if role == Role::Hamiltonian => {
+            Some(build::hamiltonian(&declaration, &equations))
+        }
         Judgement::Continuous(_) | Judgement::Constraint(_) => {
             errors.push(declaration.item.ident.span(), "without `discretise = …` there are no steps: add it");
             None

@@ -10,7 +10,8 @@
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!
-//! The files depend on each other in one direction: `{step → {limit, certified, reverse}, collocation, directions} → tangent → constraints → writer →
+//! The files depend on each other in one direction: `hamiltonian → step`, `{step → {limit, certified, reverse}, collocation, directions}
+//! → tangent → constraints → writer →
 //! {actions, solved} → factor → relations → {basis, matrix → values}`.
 
 mod actions;
@@ -20,6 +21,7 @@ mod collocation;
 mod constraints;
 mod directions;
 mod factor;
+mod hamiltonian;
 mod limit;
 mod matrix;
 mod relations;
@@ -38,6 +40,7 @@ pub use collocation::Canonical;
 pub use constraints::constrained;
 pub use directions::in_directions;
 pub use factor::MatrixFactor;
+pub use hamiltonian::HamiltonianStep;
 pub use reverse::pulled_back;
 pub use step::{Programs, Sizes, WholeStep};
 pub use values::{Value, Words};
@@ -59,6 +62,8 @@ pub enum StepRefusal {
     NotQuadratic,
     /// There is no kinetic part, so that no velocity has a momentum.
     NoKinetic,
+    /// A Hamiltonian has steps of its own.
+    Hamiltonian,
     /// As many constraints on velocities as the group has dimensions, or more, leave no motion.
     Fixed {
         /// The number of constraints.
@@ -95,6 +100,9 @@ impl fmt::Display for StepRefusal {
                 "collocation leaves this group, which isn't one of linear and quadratic relations: take a composition"
             ),
             Self::NoKinetic => write!(f, "there is no kinetic part, so no step: add a Lagrangian of the velocity"),
+            Self::Hamiltonian => {
+                write!(f, "a Hamiltonian has its step or a composition of it, with equal steps and no term beside it")
+            }
             Self::Fixed { constraints, dimension } => write!(
                 f,
                 "{constraints} constraints on velocities leave no motion on a group of dimension {dimension}: leave some out"

@@ -10,6 +10,7 @@ use super::solved::Factorisation;
 use super::values::{Value, Words};
 use super::writer::Writer;
 use super::{MOST_OPERATIONS, StepRefusal};
+use crate::declared::Role;
 use crate::staged::{Array, Program, Source, StagedDeclaration};
 
 /// The sizes of a state's parts, and their places: attitude, momentum, advected parameters, half the coordinates of the last
@@ -173,6 +174,9 @@ impl WholeStep {
     ///
     /// The reason why there is none.
     pub fn of(staged: &StagedDeclaration) -> Result<Self, StepRefusal> {
+        if staged.role == Role::Hamiltonian {
+            return Err(StepRefusal::Hamiltonian);
+        }
         if !staged.has_kinetic {
             return Err(StepRefusal::NoKinetic);
         }
@@ -380,7 +384,7 @@ impl Writer<'_> {
         self.factors.iter().map(|factor| factor.read(Array::Attitude)).collect()
     }
 
-    fn seen(&self) -> Program {
+    pub(super) fn seen(&self) -> Program {
         let (mut words, g, mut all) = (Words::default(), self.attitudes(), Vec::new());
         for (at, one) in self.staged.carried.iter().enumerate() {
             let inverse = &|words: &mut Words, k: usize| self.factors[k].inverse(words, &g[k]);
@@ -396,7 +400,7 @@ impl Writer<'_> {
         words.program(&all)
     }
 
-    fn defect(&self) -> Program {
+    pub(super) fn defect(&self) -> Program {
         let mut words = Words::default();
         let sum = self.factors.iter().fold(Value::ZERO, |sum, factor| {
             let defect = factor.defect(&mut words, &factor.read_all(Array::Attitude));
@@ -405,7 +409,7 @@ impl Writer<'_> {
         words.program(&[sum])
     }
 
-    fn spatial(&self) -> Program {
+    pub(super) fn spatial(&self) -> Program {
         let (mut words, mut all) = (Words::default(), Vec::new());
         let momentum = Value::inputs(Array::Momentum, self.dimension());
         for (factor, g) in self.factors.iter().zip(self.attitudes()) {

@@ -74,7 +74,7 @@ impl Writer<'_> {
     }
 
     /// Advected parameters with their derivatives `−ζ·w`, by the entries of `ζ̂`.
-    fn moved(&self, words: &mut Words, turned: &[Value]) -> Vec<Dual> {
+    pub(super) fn moved(&self, words: &mut Words, turned: &[Value]) -> Vec<Dual> {
         let mut own = Words::default();
         let increments: Vec<Matrix> = self.factors.iter().map(|factor| factor.read_all(Array::Increment)).collect();
         let mut changes = Vec::new();

@@ -74,19 +74,20 @@ fn known(role: Role) -> Vec<&'static str> {
         Role::Nonholonomic => {
             vec!["group", "advected", "given", role.key(), "velocity", "discretise", "generators", "crate"]
         }
+        Role::Hamiltonian => vec!["group", "advected", role.key(), "momentum", "generators", "crate"],
         _ => vec!["group", "advected", "given", role.key(), "generators", "gradients", "crate"],
     };
     match role {
         Role::Lagrangian => known.extend(["l", "velocity", "discretise", "pace"]),
         Role::Force => known.push("displacement"),
-        Role::Constraint | Role::Nonholonomic => {}
+        Role::Constraint | Role::Nonholonomic | Role::Hamiltonian => {}
     }
     known
 }
 
 fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &mut Errors) -> syn::Result<()> {
     let known = known(role);
-    let has_velocity = known.contains(&"velocity");
+    let has_velocity = known.contains(&"velocity") || known.contains(&"momentum");
     one_comma(input)?;
     let Some(key) = key(input, &known) else {
         if !arguments.has_nameless {
@@ -121,6 +122,11 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             arguments.discretisation.get_or_insert((key.clone(), usual));
             arguments.continuous = Some((key, input.parse()?));
         }
+        "h" if role == Role::Hamiltonian => {
+            once(arguments.continuous.is_some());
+            equals(&key, input)?;
+            arguments.continuous = Some((key, input.parse()?));
+        }
         expression if expression == role.key() => {
             once(arguments.expression.is_some());
             equals(&key, input)?;
@@ -132,7 +138,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             equals(&key, input)?;
             *place = Some((key, input.parse()?));
         }
-        "velocity" if has_velocity => {
+        "velocity" | "momentum" if has_velocity => {
             once(arguments.velocity.is_some());
             arguments.velocity = Some((key.clone(), velocities(&key, input)?));
         }

@@ -22,6 +22,7 @@ pub(super) fn fields(
             Role::Lagrangian => "a Lagrangian",
             Role::Force => "a force",
             Role::Constraint | Role::Nonholonomic => "a constraint",
+            Role::Hamiltonian => "a Hamiltonian",
         };
         errors.push(item.ident.span(), format!("{what} is a struct with named fields: its parameters"));
         return Default::default();

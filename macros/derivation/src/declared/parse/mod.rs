@@ -48,6 +48,7 @@ pub fn attribute_and_item(text: &TokenStream, errors: &mut Errors) -> Option<(Ro
         "lagrangian" => Some(Role::Lagrangian),
         "force" => Some(Role::Force),
         "nonholonomic" => Some(Role::Nonholonomic),
+        "hamiltonian" => Some(Role::Hamiltonian),
         _ => None,
     };
     let found = item.attrs.iter().enumerate().find_map(|(at, attribute)| Some((at, role(attribute)?)));
@@ -225,6 +226,7 @@ fn missing(role: Role) -> &'static str {
         }
         Role::Force => "the virtual work is missing: write `work = …`, linear in `eta` and `eta_next`",
         Role::Constraint => "the constraint is missing: write `zero = …`, a function of where two bodies are",
+        Role::Hamiltonian => "the Hamiltonian is missing: write `momentum = mu, h = …` with one in `mu`",
         Role::Nonholonomic => "the constraint is missing: write `velocity = Omega, zero = …`, linear in `Omega`",
     }
 }

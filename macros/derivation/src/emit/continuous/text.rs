@@ -296,6 +296,21 @@ pub(super) fn derivation(declaration: &Declaration, equations: &Equations) -> St
     setting(declaration, false) + &section(declaration, equations)
 }
 
+/// The Hamiltonian, and its derivatives: those of the momentum stand where a Lagrangian has those of the velocity.
+pub(in crate::emit) fn of_hamiltonian(declaration: &Declaration, equations: &Equations) -> String {
+    let derived = &equations.derived;
+    let shown = |expression| text(expression, &derived.symbols);
+    let sections = [
+        ("hamiltonian", format!("h = {}", shown(&derived.lagrangian))),
+        ("velocity", format!("⟨∂h/∂μ, η⟩ = {}", shown(&derived.momentum))),
+        ("diamond", format!("⟨∂h/∂w ⋄ w, η⟩ = {}", shown(&derived.diamond))),
+        ("equations", "ξ = ∂h/∂μ, μ̇ = ad*_ξ μ − ∂h/∂w ⋄ w, ẇ = −ξ·w, ġ = g ξ̂    [(1.12)]".to_owned()),
+        ("certainty", certified("these terms", equations.sureness)),
+    ];
+    let sections = sections.map(|(title, text)| format!("{title}\n    {text}\n"));
+    [setting(declaration, false)].into_iter().chain(sections).collect()
+}
+
 /// The equations without the group and its action.
 pub(in crate::emit) fn section(declaration: &Declaration, equations: &Equations) -> String {
     let texts = self::equations(declaration, equations);
