@@ -200,7 +200,7 @@ def estimate(
     tolerance: float = 1e-5,
     iterations: int = 100,
 ) -> Fit:
-    """As `Term.estimate`."""
+    """The fit of `Term.estimate`."""
     import numpy as np
 
     if term.role != "lagrangian" or term.has_pace or term._signals():
