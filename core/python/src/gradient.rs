@@ -27,10 +27,10 @@ pub(crate) struct Motion {
 pub(crate) struct Covectors {
     velocity: Vec<f64>,
     momentum: Vec<f64>,
-    /// By the columns of the attitude, and these columns: a quaternion for a rotation.
+    /// Derivatives by the columns of the attitude, and these columns: a quaternion for a rotation.
     attitude: Vec<f64>,
     shown: Vec<f64>,
-    /// By the entries of the attitude's matrices.
+    /// Derivatives by the entries of the attitude's matrices.
     matrix: Vec<f64>,
     energy: Vec<f64>,
     spatial_momentum: Vec<f64>,

@@ -190,3 +190,15 @@ def test_a_wheel_turns_a_body():
     assert plan["velocity_x_1"][-1] == pytest.approx(0.5, abs=1e-9)
     # The angular impulse of the wheel is its own momentum at the end.
     assert plan.force[:, 3].sum() * 0.05 == pytest.approx(0.3 * (0.5 - 0.5 * 1.8 / 0.3), abs=1e-9)
+
+
+@pytest.mark.parametrize("axis", "xyz")
+@pytest.mark.parametrize("angle", [0.7, 1.5707963])
+def test_the_shortest_time_needs_no_guess(axis, angle):
+    """A turn about one axis with a bounded torque takes ``2 √(J θ/u)``."""
+    turn = [np.cos(angle / 2), *(np.sin(angle / 2) * (np.array(list("xyz")) == axis))]
+    task = ls.body([1, 1, 1]).control(step=0.03, steps=100, goal=turn, bound=1, axes=axis, minimum_time=True)
+    plan = task.solve()
+    assert plan.converged and plan.duration == pytest.approx(2 * angle**0.5, rel=1e-3)
+    stalled = ls.body([1, 1, 1]).control(step=0.03, steps=100, goal=turn, bound=1, axes=axis, minimum_time=True, guess=0.0).solve()
+    assert stalled.converged or "guess" in stalled.why

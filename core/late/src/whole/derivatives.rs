@@ -76,26 +76,26 @@ pub struct Row {
 /// zeros.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
-    /// Of the body velocity.
+    /// The body velocity's.
     pub velocity: Vec<f64>,
-    /// Of the momentum in the body frame.
+    /// The momentum's, in the body frame.
     pub momentum: Vec<f64>,
-    /// Of the entries of the attitude, the matrices of its factors row by row.
+    /// The attitude's entries', the matrices of its factors row by row.
     pub attitude: Vec<f64>,
-    /// Of the energy, one number.
+    /// The energy's, one number.
     pub energy: Vec<f64>,
-    /// Of the momentum in space.
+    /// The momentum's in space.
     pub spatial_momentum: Vec<f64>,
 }
 
 /// The derivatives of a scalar by a motion's start and parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient {
-    /// By a displacement of the attitude at the start.
+    /// The derivatives by a displacement of the attitude at the start.
     pub displacement: Vec<f64>,
-    /// By the momentum at the start.
+    /// The derivatives by the momentum at the start.
     pub momentum: Vec<f64>,
-    /// By all numbers of the parameters, at this momentum; those that change with time as if they changed by a constant.
+    /// The derivatives by all numbers of the parameters, at this momentum; those that change with time as if they changed by a constant.
     pub parameters: Vec<f64>,
 }
 
@@ -118,7 +118,7 @@ impl<B: Backend<f64>> Varied<B> {
     ///
     /// # Errors
     ///
-    /// Those of [`Whole::derivatives`]; the steps have lengths of their own.
+    /// The errors of [`Whole::derivatives`]; the steps have lengths of their own.
     pub fn derivatives(&self) -> Result<Derivatives<B>, WholeError> {
         if !matches!(self.lengths, Lengths::Equal) {
             let cause = "has steps of different lengths, whose derivatives aren't known: take equal ones";
@@ -153,8 +153,8 @@ impl<B: Backend<f64>> Derivatives<B> {
     /// The gradient of a scalar of some states of a motion, of which there are the derivatives by each; the rows stand in order of
     /// time. The start is a state of the stepper.
     ///
-    /// Of parameters that change with time, `given` gets the derivatives by all parameters for each span, its start and
-    /// length in s: by their mean over it, or by their value, where the length is zero.
+    /// The function `given` gets the derivatives by all parameters for each span of time, where parameters change, with the span's
+    /// start and length in s: by their mean over it, or by their value, where the length is zero.
     ///
     /// A motion is made anew, and its stages are stored, as many as fit into 128 MiB; then the rest is made once more.
     ///

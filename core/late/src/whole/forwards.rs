@@ -189,7 +189,7 @@ impl<B: Backend<f64>> Derivatives<B> {
     /// The Lyapunov exponents over so many steps, 1/s, in descending order: one for each of the `2n` components
     /// of displacement and momentum. The columns are orthonormalised every `between` steps.
     ///
-    /// Those of a motion without forces come in pairs `±λ`.
+    /// The exponents of a motion without forces come in pairs `±λ`.
     ///
     /// # Errors
     ///

@@ -9,7 +9,7 @@ use crate::code::Backend;
 /// A stepper some of whose parameters have other values in each step, by [`Whole::steered`]: the thrusts of a declared force, the
 /// length of a pendulum, a field.
 ///
-/// As the plant of a plan or an estimate its inputs are these values, which hold for a step.
+/// The inputs of this plant are these values, which hold for a step.
 #[derive(Clone, Debug)]
 pub struct Steered<B: Backend<f64>> {
     whole: Whole<B>,

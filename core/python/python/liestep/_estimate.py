@@ -87,7 +87,9 @@ class Fit:
         self.attitude: Array = entries.reshape(3, 3) if term.group == "SO3" else entries
         count = 2 * len(self.velocity) + len(task.unknowns)
         self.covariance: Array = np.array(made["covariance"]).reshape(count, count)
-        self.inputs: Array = np.array(made["inputs"]).reshape(-1, max(1, len(task.axes)))
+        # A force has all components.
+        inputs = np.array(made["inputs"]).reshape(task.steps if task.axes else 0, -1 if task.axes else 0)
+        self.inputs: Array = inputs if task.are_parameters else inputs[:, task.axes]
         self._step, self._steps, self._names = task.step, task.steps, names
         changed, first, values = {}, 0, made["constants"]
         for name, value, own in places:
@@ -195,10 +197,10 @@ def estimate(
     force: Any = None,
     axes: Any = None,
     inputs: Mapping[str, float] | None = None,
-    tolerance: float = 1e-8,
+    tolerance: float = 1e-5,
     iterations: int = 100,
 ) -> Fit:
-    """As `Term.estimate`."""
+    """The fit of `Term.estimate`."""
     import numpy as np
 
     if term.role != "lagrangian" or term.has_pace or term._signals():

@@ -85,7 +85,7 @@ class Gradient:
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """By all parameters, of the shapes that `Term.parameters` has them in; by a signal as if it changed by a constant."""
+        """The derivatives by all parameters, of the shapes that `Term.parameters` has them in; by a signal as if it changed by a constant."""
         return {name: self._by(places) for name, places in self._term._shown().items()}
 
     def __repr__(self) -> str:

@@ -25,7 +25,7 @@ def jax(
 
     The function has the arguments ``velocity``, ``turn`` and parameters of the term by their names: those that aren't given are
     the term's own numbers and have no derivatives. A ``turn`` displaces the attitude at the start about the axes of the
-    body, rad; off SO(3) by the coordinates ``ζ`` of ``g exp ζ̂``. It returns a dictionary with ``time``, ``velocity``, ``momentum``,
+    body, rad; off SO(3) by the coordinates ``ζ`` of ``g exp ζ̂``. The result is a dictionary with ``time``, ``velocity``, ``momentum``,
     ``attitude`` (matrices, body to space; of a product all entries in a row), ``energy`` and ``spatial_momentum``, a row
     for each time.
 

@@ -118,8 +118,8 @@ class Term(Sum):
         inputs : mapping, optional
             Instead the standard deviations of parameters that have another value in each step, about the term's own.
         axes, tolerance, iterations : optional
-            The components of the velocity along which that force acts; the last step of the search, in standard deviations;
-            and its most iterations.
+            The components of the velocity along which that force acts; the last step of the search, in standard deviations,
+            1e-5 by default; and its most iterations.
 
         Returns
         -------

@@ -15,7 +15,7 @@ from .errors import SetupError
 if TYPE_CHECKING:
     from ._arrays import Array
 
-#: What is read of a run, and the name that derivatives have for it.
+#: The quantities that are read of a run, and the names that derivatives have for them.
 READ = {"velocity": "velocity", "momentum": "momentum", "attitude": "matrix", "energy": "energy", "spatial_momentum": "spatial_momentum"}
 
 

@@ -91,7 +91,7 @@ fn reversed(
 }
 
 /// The program of the derivatives of a scalar by arrays of a program's inputs, each of so many numbers, one array after the
-/// other. It reads the inputs of the program, and in the array of factors the derivatives by its outputs.
+/// other. Its inputs are those of the program, and in the array of factors the derivatives by the outputs.
 #[must_use]
 pub fn pulled_back(program: &Program, by: &[(Array, usize)]) -> Program {
     let mut words = Words::default();

@@ -2,7 +2,7 @@
 //! function theorem for the increment.
 //!
 //! A direction is a displacement `ζ` of the attitude, `g ← g exp ζ̂`, with a change `δμ` of the momentum; advected
-//! parameters change by `δw = −ζ·w`, or, with parameters and constants that change, too, by any `δw`. With the residual `r(y, a, w)` of the momentum equation (2.7) in half the coordinates
+//! parameters change by `δw = −ζ·w`, or by any `δw` where parameters and constants change, too. With the residual `r(y, a, w)` of the momentum equation (2.7) in half the coordinates
 //! `y` of the increment,
 //!
 //! ```text

@@ -181,7 +181,7 @@ impl Words {
     }
 
     /// The result of an operation on these operands.
-    pub(super) fn operation<R>(&mut self, operation: Operation<R>, [a, b]: [Value; 2]) -> Value {
+    pub(super) fn operation<R: Copy>(&mut self, operation: Operation<R>, [a, b]: [Value; 2]) -> Value {
         match operation {
             Operation::Negate(_) => self.negate(a),
             Operation::Add(..) => self.add(a, b),
