@@ -152,12 +152,13 @@ class Scene:
         (self.folder / "step.js").write_text(self.js + IN_NODE.format(**values))
         return self.said(["node", "step.js"])
 
-    def on_opencl(self, text):
+    def on_opencl(self, *options):
         import pyopencl as cl
 
         context = cl.Context(cl.get_platforms()[0].get_devices()[:1])
         queue = cl.CommandQueue(context)
-        kernels = cl.Program(context, text).build()
+        text = self.gpu if not options else self.gpu.replace("#pragma OPENCL FP_CONTRACT OFF\n", "")
+        kernels = cl.Program(context, text).build(options=list(options))
         members = len(self.mass)
         parameters = np.repeat(np.array(self.parameters.split(","), float)[:, None], members, axis=1)
         parameters[self.place] = self.mass
@@ -239,9 +240,9 @@ def main(liestep, members=100):
             except Exception as cause:  # no loader, no platform
                 print(f"skipped: OpenCL: {cause}")
             else:
-                compare("OpenCL", lambda: scene.on_opencl(scene.gpu))
-                fused = scene.gpu.replace("#pragma OPENCL FP_CONTRACT OFF\n", "#pragma OPENCL FP_CONTRACT ON\n")
-                compare("OpenCL that fuses, which has to differ", lambda: scene.on_opencl(fused), False)
+                compare("OpenCL", scene.on_opencl)
+                fast = "-cl-fast-relaxed-math"
+                compare("OpenCL that is fast, which has to differ", lambda: scene.on_opencl(fast), False)
                 doors += 1
             for fmi in (3, 2):
                 others, count = scene.as_unit(fmi)

@@ -130,7 +130,7 @@ fn names_change_no_bit() {
         let listed = format!("[9..10]: {b}\n   parameters[10..11]: {b}{d}\n   parameters[11..12]: {c}\n");
         assert!(text.contains(&format!("[0..9]: {a}_d\n   parameters{listed}")), "{text}");
         // The comment that lists the names differs.
-        (end, text[text.find("static void constants").unwrap()..].to_owned())
+        (end, text[text.find("static void lagrangian_constants").unwrap()..].to_owned())
     });
     assert!(all.iter().all(|one| *one == all[0]));
 }
