@@ -1,5 +1,7 @@
 //! The certificate of a step, as JSON.
 
+use std::fmt::Write as _;
+
 use liestep_derivation::whole::{Chart, WholeStep};
 use liestep_derivation::{Action, Carried, Function, Operation, ParameterKind, Program};
 use serde_json::{Value, json};
@@ -62,8 +64,10 @@ pub fn certificate(declaration: &Declaration) -> Result<String, LateError> {
     };
     let claims = CLAIMS.iter().filter(|claim| has(claim.0));
     let claims = claims.map(|(name, of, equation)| json!({"name": name, "of": of, "equation": equation}));
-    let digest = Sha256::digest(c(declaration)?);
-    let digest: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+    let mut digest = "sha256:".to_owned();
+    for byte in Sha256::digest(c(declaration)?) {
+        let _ = write!(digest, "{byte:02x}");
+    }
     let advected: Vec<Value> = declaration.carried.iter().map(carried).collect();
     let entries = [
         ("format", json!("liestep certificate 1")),
@@ -75,7 +79,7 @@ pub fn certificate(declaration: &Declaration) -> Result<String, LateError> {
         ("power", json!(declaration.denominators)),
         ("ends", json!(ends(declaration, &step))),
         ("claims", claims.collect()),
-        ("digests", json!({"c": format!("sha256:{digest}")})),
+        ("digests", json!({"c": digest})),
     ];
     let programs: Vec<String> = programs.map(|(name, data)| format!("  {}: {data}", json!(name))).collect();
     let mut lines: Vec<String> = entries.iter().map(|(key, value)| format!("{}: {value}", json!(key))).collect();
@@ -136,6 +140,6 @@ fn applied(function: Function) -> String {
     match function {
         Function::Stumpff(k) => format!("stumpff_{k}"),
         Function::LogRatio(k) => format!("log_ratio_{k}"),
-        other => other.name().to_owned(),
+        other => other.name(),
     }
 }
