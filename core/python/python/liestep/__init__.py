@@ -22,7 +22,7 @@ from ._run import Columns, Happenings, Run, Scene, SceneRun, scene
 from ._signal import Signal, signal
 from ._state import State
 from ._stepper import Stepper, euler, schemes, translation
-from ._term import Term, force, lagrangian, nonholonomic
+from ._term import Term, force, hamiltonian, lagrangian, nonholonomic
 from .errors import ColumnError, DeclarationError, Error, SceneError, SetupError, StepError, StoreError
 
 __version__ = "0.1.0"
@@ -30,6 +30,6 @@ __all__ = [
     "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Happenings", "Many", "Moment", "Orbit", "Plan", "Run",
     "Scene", "SceneError", "SceneRun",
     "SetupError", "Signal", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
-    "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "lagrangian", "magnetic_damping", "mixed",
+    "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "hamiltonian", "lagrangian", "magnetic_damping", "mixed",
     "nonholonomic", "nonstandard", "normal", "orbit", "point", "rotation", "rotor", "scene", "schemes", "signal", "spring", "thrust", "torque", "translation", "uniform",
 ]
