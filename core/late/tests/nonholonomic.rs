@@ -98,3 +98,35 @@ fn impossible_constraints_are_refused() {
     );
     assert!(matches!(alone, Err(WholeError::Declaration(LateError::Step(_)))), "{alone:?}");
 }
+
+/// The energy over a million steps stays in the band of the first thousand.
+#[test]
+#[ignore = "a million steps: `cargo test -p liestep-late --test nonholonomic -- --ignored`"]
+fn the_energy_of_a_million_steps_is_bounded() {
+    let sleigh = Declaration::sum(&[
+        Declaration::parse(
+            "#[lagrangian(group = SE2, velocity = xi, discretise = trapezoid(Cayley),
+                l = 0.5 * m * ((xi[1]).powi(2) + (xi[2] + a * xi[0]).powi(2)) + 0.5 * I_0 * (xi[0]).powi(2))]
+            struct Plate { m: f64, I_0: f64, a: f64 }",
+        )
+        .unwrap(),
+        Declaration::parse("#[nonholonomic(group = SE2, velocity = xi, zero = s * xi[2])] struct Blade { s: f64 }")
+            .unwrap(),
+    ])
+    .unwrap();
+    let sleigh = Whole::of(sleigh, &[1.3, 0.4, 0.6, 1.0], 0.05, Method::default()).unwrap();
+    let suslov = stepper(&[[0.0, 0.6, 0.8]], 0.05, "step").unwrap();
+    for (name, stepper, velocity) in [("sleigh", sleigh, [1.1, -0.8, 0.0]), ("Suslov", suslov, [-1.2, 0.8, -0.6])] {
+        let mut state = stepper.start(&IDENTITY, &velocity).unwrap();
+        let energy = stepper.energy(&state);
+        let mut bands = [0.0_f64; 2];
+        for row in 0..2_000 {
+            let steps = if row < 1_000 { 1 } else { 1_000 };
+            stepper.run(&mut state, steps).unwrap();
+            let band = &mut bands[usize::from(steps > 1)];
+            *band = band.max((stepper.energy(&state) - energy).abs());
+        }
+        println!("{name}: {bands:?} of {energy}");
+        assert!(bands[1] <= bands[0] * 1.1, "{name}: {bands:?}");
+    }
+}

@@ -25,7 +25,7 @@ from ._run import Columns, Happenings, Run, Scene, SceneRun, scene
 from ._signal import Signal, signal
 from ._state import State
 from ._stepper import Stepper, euler, schemes, translation
-from ._term import Term, force, lagrangian, nonholonomic
+from ._term import Term, force, hamiltonian, lagrangian, nonholonomic
 from ._torch import torch
 from .errors import ColumnError, DeclarationError, Error, SceneError, SetupError, StepError, StoreError
 
@@ -34,6 +34,6 @@ __all__ = [
     "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Fit", "Gradient", "Happenings", "Many", "Moment", "Orbit", "Plan", "Run",
     "Scene", "SceneError", "SceneRun",
     "SetupError", "Signal", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
-    "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "jax", "lagrangian", "magnetic_damping", "mixed",
+    "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "hamiltonian", "jax", "lagrangian", "magnetic_damping", "mixed",
     "nonholonomic", "nonstandard", "normal", "orbit", "point", "rotation", "rotor", "scene", "schemes", "signal", "spring", "thrust", "torch", "torque", "translation", "uniform",
 ]

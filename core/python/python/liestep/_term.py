@@ -369,3 +369,52 @@ def nonholonomic(
     names = [name.strip() for name in text("velocity", velocity).split(",")]
     named = f"velocity = {names[0]}" if len(names) == 1 else f"velocity({', '.join(names)})"
     return _declared("nonholonomic", group, f"{named}, discretise = {discretise}, zero", zero, advected, numbers, generators)
+
+
+def hamiltonian(
+    group: Group,
+    *,
+    h: str,
+    generators: Any = None,
+    advected: Mapping[str, str] | None = None,
+    momentum: str = "mu",
+    **parameters: Any,
+) -> Term:
+    """A Hamiltonian of the body momentum and of what is advected: no velocity needs to have a momentum.
+
+    Its step is a Poisson map of order two, which keeps Casimirs and momenta in space to rounding; compositions of it are of
+    order four and more. Runs start with a ``momentum``. All terms stand in one text.
+
+    Parameters
+    ----------
+    group, generators, advected, **parameters
+        As of `lagrangian`.
+    h : str
+        A smooth function of the momentum and of what is advected, J.
+    momentum : str
+        What the momentum is called in `h`; of several bodies names with commas.
+
+    Returns
+    -------
+    Term
+        What is stepped by ``stepper(step)``.
+
+    Raises
+    ------
+    DeclarationError
+        With line and column of the text.
+
+    Examples
+    --------
+    A sub-Riemannian geodesic on the Heisenberg group, along two of three directions, is a circle in the plane:
+
+    >>> import liestep as ls
+    >>> geodesic = ls.hamiltonian("Heisenberg", h="((mu[0]).powi(2) + (mu[1]).powi(2)) / 2")
+    >>> run = geodesic.stepper(0.01).run(momentum=[0.8, -0.3, 1.5], until=10)
+    >>> bool(abs(run["energy"] - 0.365).max() < 1e-12)
+    True
+    """
+    numbers = {name: _value(name, value) for name, value in parameters.items()}
+    names = [name.strip() for name in text("momentum", momentum).split(",")]
+    named = f"momentum = {names[0]}" if len(names) == 1 else f"momentum({', '.join(names)})"
+    return _declared("hamiltonian", group, f"{named}, h", h, advected, numbers, generators)

@@ -107,7 +107,9 @@ impl Constants {
             for operation in operations.iter_mut() {
                 *operation = operation.of(operation.read().map(moved));
             }
-            outputs.iter_mut().for_each(|output| *output = moved(*output));
+            for output in outputs.iter_mut() {
+                *output = moved(*output);
+            }
             inputs.push(source);
             inputs.len() - 1
         });

@@ -162,14 +162,14 @@ impl Writer<'_> {
     }
 
     /// The right-trivialised Jacobian with the constraints, by which a solution is judged.
-    pub(super) fn branch_with_constraints(&self, words: &mut Words, d: &[Matrix], jacobian: Matrix) -> Matrix {
+    pub(super) fn branch_with_constraints(&self, words: &mut Words, d: &[Matrix], jacobian: &Matrix) -> Matrix {
         let scale = Value::Input(Source::new(Array::Constants, self.staged.constraints.scale));
         let normals = self.normals(words, &|at| Value::Input(Source::new(Array::Advected, at)));
         let (mut rows, mut slopes) = (jacobian.clone(), Vec::new());
         for (constraint, normal) in self.staged.constraints.each.iter().zip(&normals) {
             let slope = self.at_increments(words, &constraint.slope, d, &Value::Input);
             let slope = normal.combined(words, slope, &slopes);
-            normal.border(words, &jacobian, (scale, &slope), &mut rows);
+            normal.border(words, jacobian, (scale, &slope), &mut rows);
             slopes.push(slope);
         }
         rows

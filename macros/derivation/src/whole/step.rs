@@ -305,7 +305,7 @@ impl Writer<'_> {
         let jacobian = self.with_increments(&mut words, &self.staged.programs.momentum_jacobian, &d, &read);
         let step = Value::Input(Source::new(Array::Step, 0));
         let jacobian = Matrix { rows: n, columns: n, entries: jacobian }.scaled(&mut words, step);
-        let jacobian = self.branch_with_constraints(&mut words, &d, jacobian);
+        let jacobian = self.branch_with_constraints(&mut words, &d, &jacobian);
         let determinants = self.pattern.factorise(&mut words, &jacobian).determinants;
         all.extend(determinants.as_flattened());
         for factor in &self.factors {
