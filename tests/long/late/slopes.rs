@@ -85,7 +85,9 @@ impl Motion<'_> {
     fn by_numbers(&self, places: &[usize]) -> f64 {
         self.slope(|by| {
             let mut numbers = self.numbers.to_vec();
-            places.iter().for_each(|&place| numbers[place] += by);
+            for &place in places {
+                numbers[place] += by;
+            }
             self.scalar(&numbers, self.attitude, self.velocity)
         })
     }
@@ -173,8 +175,8 @@ pub(crate) fn assert_gradient(declaration: &'static Declaration, numbers: &[f64]
                 "{what}, by {of}: {found:e}, {expected:e} of {size:e}"
             );
         };
-        for k in 0..n {
-            near(by_velocity[k], motion.by_velocity(k), format!("velocity {k}"));
+        for (k, slope) in by_velocity.iter().enumerate() {
+            near(*slope, motion.by_velocity(k), format!("velocity {k}"));
             near(gradient.displacement[k], motion.by_turn(k), format!("turn {k}"));
         }
         along(&derivatives, &start, &rows, (&gradient, velocity, &by_velocity));

@@ -12,7 +12,6 @@ from .errors import DeclarationError, SetupError
 
 if TYPE_CHECKING:
     from ._arrays import Array
-    from ._run import Run
 
 
 @dataclass
@@ -240,7 +239,7 @@ class Differentiable:
         return self._origin
 
 
-def _attitudes(run: Run) -> Array:
+def _attitudes(run: Any) -> Array:
     """The columns of the attitude, a row for each row."""
     import numpy as np
 
@@ -248,10 +247,11 @@ def _attitudes(run: Run) -> Array:
     return np.stack([run[name] for name in run.names[1:end]], axis=1)
 
 
-def _shape(run: Run, name: str) -> tuple[int, ...]:
+def _shape(run: Any, name: str) -> tuple[int, ...]:
     """The shape of a quantity of a run."""
     if name == "attitude":
-        return _attitudes(run).shape
+        columns: tuple[int, ...] = _attitudes(run).shape
+        return columns
     if name == "matrix" and "q_w" not in run.names:
         raise SetupError("`matrix` is one of SO3: give the derivatives by the columns of the `attitude`")
     shape: tuple[int, ...] = getattr(run, name).shape
