@@ -1,4 +1,4 @@
-//! A whole step in C99, and in the text that C99, OpenCL C and CUDA share.
+//! A whole step in C99, and in the text that C99, `OpenCL` C and CUDA share.
 //!
 //! In the templates `$name` and `@NAME` have the declaration's name in front, so that the texts of several declarations may
 //! stand in one unit.
@@ -121,16 +121,15 @@ pub fn numbered(whole: &Whole, start: [&[f64]; 3]) -> [String; 2] {
     }
     let [attitude, momentum, velocity] = start.map(list);
     let next = if gammas.len() == 1 { "$step($stages, state)" } else { "$compose($stages, $gamma, @STAGES, state)" };
-    let texts = [NUMBERED_HEAD, NUMBERED].map(|text| {
+    [NUMBERED_HEAD, NUMBERED].map(|text| {
         let text = text.replace("STEPPERS", &steppers.join(",\n    ")).replace("GAMMAS", &list(&gammas));
         let text = text.replace("STAGE_COUNT", &gammas.len().to_string()).replace("NEXT", next);
         let text = text.replace("ATTITUDE", &attitude).replace("MOMENTUM", &momentum).replace("VELOCITY", &velocity);
         C99.text(&text, &prefix(whole.declaration()))
-    });
-    texts
+    })
 }
 
-/// A step of many members as one text in OpenCL C, CUDA and C99, with two kernels: the start and so many steps.
+/// A step of many members as one text in `OpenCL` C, CUDA and C99, with two kernels: the start and so many steps.
 ///
 /// # Errors
 ///
