@@ -74,26 +74,8 @@ pub(crate) fn command() -> Command {
                 .arg(verify())
                 .arg(out()),
         )
-        .subcommand(
-            Command::new("derive")
-                .about("Prints what is derived of an effect, or of a scene")
-                .arg(Arg::new("NAME").help("An effect or a scene file; all effects are listed if it is left away"))
-                .arg(flag("latex", "The equations as LaTeX"))
-                .arg(flag("rust", "The straight-line code of a step in Rust"))
-                .arg(flag("c", "A step as C99 without dependencies"))
-                .arg(flag("certificate", "The step as data with its claims, for `python -m liestep.verify`"))
-                .arg(flag("header", "The declarations of that step, for other units"))
-                .arg(flag("gpu", "A step of many members as one text in OpenCL C, CUDA and C99"))
-                .arg(flag("js", "A step in JavaScript"))
-                .group(ArgGroup::new("form").args(["latex", "rust", "c", "header", "gpu", "js", "certificate"]).requires("NAME")),
-        )
-        .subcommand(
-            Command::new("fmu")
-                .about("Writes scenes as units of other simulations, FMI 3.0 for co-simulation: the source, and a binary where `cc` is")
-                .arg(scenes())
-                .arg(flag("fmi2", "FMI 2.0, whose variables are numbers"))
-                .arg(out()),
-        )
+        .subcommand(derive())
+        .subcommand(fmu())
         .subcommand(import())
         .subcommand(
             Command::new("replay")
@@ -106,6 +88,30 @@ pub(crate) fn command() -> Command {
                 .about("Prints what a shell needs to complete these commands")
                 .arg(Arg::new("SHELL").required(true).value_parser(value_parser!(Shell))),
         )
+}
+
+fn derive() -> Command {
+    Command::new("derive")
+        .about("Prints what is derived of an effect, or of a scene")
+        .arg(Arg::new("NAME").help("An effect or a scene file; all effects are listed if it is left away"))
+        .arg(flag("latex", "The equations as LaTeX"))
+        .arg(flag("rust", "The straight-line code of a step in Rust"))
+        .arg(flag("c", "A step as C99 without dependencies"))
+        .arg(flag("header", "The declarations of that step, for other units"))
+        .arg(flag("gpu", "A step of many members as one text in OpenCL C, CUDA and C99"))
+        .arg(flag("js", "A step in JavaScript"))
+        .arg(flag("certificate", "The step as data with its claims, for `python -m liestep.verify`"))
+        .group(
+            ArgGroup::new("form").args(["latex", "rust", "c", "header", "gpu", "js", "certificate"]).requires("NAME"),
+        )
+}
+
+fn fmu() -> Command {
+    Command::new("fmu")
+        .about("Writes scenes as units of other simulations by FMI 3.0: the source, and a binary where there is `cc`")
+        .arg(files("The scene files"))
+        .arg(flag("fmi2", "FMI 2.0, whose variables are numbers"))
+        .arg(out())
 }
 
 fn import() -> Command {

@@ -138,12 +138,16 @@ fn functions_of_the_engine_are_said() {
     assert!(model(&page).is_none() && !page.contains("details"));
 }
 
-/// The weight of a page, with and without what was recorded.
+/// The weight of a page, of ten thousand frames and of a step with functions of the browser.
 #[test]
 fn a_page_is_light() {
     let folder = folder("computed-weight");
     let (page, _) = run(&folder, TOP);
-    let recorded: usize =
-        page.lines().filter(|line| line.len() > 500 && line.contains('"') && !line.contains("//")).map(str::len).sum();
-    assert!(page.len() < 180_000 && page.len() - recorded < 60_000, "{} {recorded}", page.len());
+    let times = 4 * 201 * 4 / 3;
+    assert!(page.len() - times < 61_000, "{}", page.len());
+    let (page, _) = run(&folder, &TOP.replace("duration = 2", "duration = 100"));
+    assert!(page.len() < 120_000, "{}", page.len());
+    let (page, _) =
+        run(&folder, &TOP.replace("4]\n", "4]\nkinetic = \"sixth-order\"\n").replace("[drag]\nc = 1e-3\n", ""));
+    assert!(page.len() < 180_000, "{}", page.len());
 }

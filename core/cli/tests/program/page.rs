@@ -33,7 +33,11 @@ fn it_is_complete() {
 #[test]
 fn a_table_is_replayed() {
     let folder = folder("replay");
-    let page = page(&folder, "top");
+    // Steps with functions of the browser are recorded, too.
+    let scene = TOP.replace("4]\n", "4]\nkinetic = \"geodesic\"\n").replace("A heavy top with drag", "top");
+    fs::write(folder.join("top.toml"), scene).unwrap();
+    printed(&folder, &["run", "top.toml", "--csv", "--html", "--out", "."]);
+    let page = fs::read_to_string(folder.join("top.html")).unwrap();
     printed(&folder, &["replay", "top.csv", "--out", "again"]);
     let again = fs::read_to_string(folder.join("again/top.html")).unwrap();
     let lists = |page: &str| -> Vec<String> {
@@ -105,7 +109,7 @@ fn a_browser_shows_it() {
         // A slider moves, and the curves follow in the next frame.
         const before = pixels(chart), slider = document.querySelector("details input");
         slider.value = 1.5; slider.dispatchEvent(new Event("input"));
-        requestAnimationFrame(() => { root.dataset.followed = before !== pixels(chart) && root.dataset.computed === "1"; });
+        requestAnimationFrame(() => { root.dataset.followed = before !== pixels(chart) && root.dataset.computed === "2"; });
         for (const key of ["l", "Home"]) document.dispatchEvent(new KeyboardEvent("keydown", { key }));
         root.dataset.letters = getComputedStyle(document.body).fontSize;
         button.click();

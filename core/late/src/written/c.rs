@@ -1,4 +1,4 @@
-//! A whole step in C99, and in the text that C99, OpenCL C and CUDA share.
+//! A whole step in C99, and in the text that C99, `OpenCL` C and CUDA share.
 //!
 //! In the templates `$name` and `@NAME` have the declaration's name in front, so that the texts of several declarations may
 //! stand in one unit.
@@ -138,7 +138,7 @@ pub fn numbered(whole: &Whole, start: [&[f64]; 3]) -> Result<[String; 2], LateEr
     }))
 }
 
-/// A step of many members as one text in OpenCL C, CUDA and C99, with two kernels: the start and so many steps.
+/// A step of many members as one text in `OpenCL` C, CUDA and C99, with two kernels: the start and so many steps.
 ///
 /// # Errors
 ///

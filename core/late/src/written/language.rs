@@ -16,7 +16,7 @@ pub(super) enum Language {
 }
 
 impl Language {
-    /// The name of an array. `half` is a type of OpenCL C.
+    /// The name of an array. `half` is a type of `OpenCL` C.
     pub(super) const fn array(self, array: Array) -> &'static str {
         match array {
             Array::Half if !matches!(self, Self::Rust) => "y",

@@ -86,7 +86,7 @@ fn kernels_have_the_bits_of_the_library() {
     assert!(has_the_bits_of(&Flyer { J }, attitude, &[0.5, -0.8, 1.2, 0.3, 0.2, -0.4], 1_000, (Door::Kernels, &text)));
 }
 
-/// No name of a device's text is a type or a function of OpenCL C.
+/// No name of a device's text is a type or a function of `OpenCL` C.
 #[test]
 fn kernels_name_nothing_of_opencl() {
     let text = gpu(parsed(FullTop::DECLARATION)).expect("a step");

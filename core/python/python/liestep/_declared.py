@@ -266,7 +266,7 @@ class Sum:
         Examples
         --------
         >>> import liestep as ls
-        >>> "int principal_body_step(const principal_body_stepper *stepper, principal_body_state *state)" in ls.body([1, 2, 2.5]).c
+        >>> "int rigid_body_step(const rigid_body_stepper *stepper, rigid_body_state *state)" in ls.body([1, 2, 2.5]).c
         True
         """
         return self._scene().c

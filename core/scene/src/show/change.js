@@ -17,7 +17,8 @@
     return () => { input.value = value; set(value); };
   });
   part("button", { textContent: "Reset" }).addEventListener("click", () => { rows.forEach(reset => reset()); restart(); });
-  const note = part("p", { textContent: model.isExact ? "Computed in this page, to the bit as by the program." : "Computed in this page, not to the bit: sines and cosines are those of the browser." });
+  const words = model.isExact ? "Computed in this page, to the bit as by the program." : "Computed in this page, not to the bit: sines and cosines are those of the browser.";
+  const note = part("p", { textContent: words });
 
   const [tilt, energies, momenta, rates] = motion.charts.map(chart => chart.lines.map(line => line.values));
   const stepOf = Array.from(times, time => Math.round(time / model.h));
@@ -44,7 +45,8 @@
   let job = 0;
   function restart() {
     const own = ++job, course = begun(values), first = {};
-    motion.events.length = 0;
+    // Events are those of the file.
+    if (own > 1) motion.events.length = 0;
     const refuse = (frame, text) => {
       note.textContent = text;
       for (let k = frame; k < frames; k++) {
@@ -55,7 +57,7 @@
     };
     const end_of = () => { document.documentElement.dataset.computed = own; seek(now); };
     if (!course) return refuse(0, "There is no step with these parameters.");
-    note.textContent = "Computed in this page.";
+    note.textContent = words;
     let frame = 0, made = 0;
     // A stretch of some milliseconds, so that the page stays alive.
     const stretchOn = () => {
@@ -73,4 +75,6 @@
     };
     stretchOn();
   }
+  // The program's own motion isn't written where this is it.
+  if (model.isExact) restart();
 }

@@ -83,9 +83,14 @@ impl Model {
         all
     }
 
+    /// Whether a page computes the motion of the program to the bit.
+    pub(crate) fn is_exact(&self) -> bool {
+        is_exact(self.declaration).unwrap_or_default()
+    }
+
     /// The script that has the step, the numbers and the sliders; none where the step can't be written.
     pub(crate) fn script(&self, axis: &Vector3<f64>) -> Option<String> {
-        let (text, is_exact) = (javascript(self.declaration).ok()?, is_exact(self.declaration).ok()?);
+        let (text, is_exact) = (javascript(self.declaration).ok()?, self.is_exact());
         let list = |numbers: &[f64]| numbers.iter().map(|one| format!("{one:?}")).collect::<Vec<_>>().join(",");
         let mut script = format!("/* The step. */\n{text}const model = {{ step: {}, ", constant(self.declaration));
         let _ = writeln!(script, "isExact: {is_exact}, h: {:?}, steps: {},", self.step, self.steps);

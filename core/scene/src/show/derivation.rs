@@ -59,7 +59,7 @@ pub enum Form {
     Certificate,
     /// The declarations of the step in C99, for other units.
     Header,
-    /// A step of many members in OpenCL C, CUDA and C99.
+    /// A step of many members in `OpenCL` C, CUDA and C99.
     Gpu,
     /// A step in JavaScript.
     JavaScript,

@@ -5,10 +5,12 @@ window.addEventListener("error", event => { document.documentElement.dataset.err
 
 const decode = text => new Float32Array(Uint8Array.from(atob(text), letter => letter.charCodeAt(0)).buffer);
 const times = decode(motion.times), frames = times.length;
-for (const body of motion.bodies) { body.attitudes = decode(body.attitudes); body.positions = decode(body.positions); }
+// Lists of a motion that is computed here are empty at first.
+const decoded = (text, size) => text ? decode(text) : new Float32Array(size);
+for (const body of motion.bodies) { body.attitudes = decoded(body.attitudes, 4 * frames); body.positions = decode(body.positions); }
 const [single] = motion.bodies, several = single && single.positions.length > 0;
 const start = times[0], end = times[frames - 1];
-for (const chart of motion.charts) for (const line of chart.lines) line.values = decode(line.values);
+for (const chart of motion.charts) for (const line of chart.lines) line.values = decoded(line.values, frames);
 
 // Letters and lines are larger for a lecture hall: L, or `#large`.
 let large = new URLSearchParams(location.hash.slice(1)).has("large") ? 1.7 : 1;

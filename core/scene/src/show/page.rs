@@ -233,6 +233,9 @@ impl fmt::Display for Page<'_> {
         let stride = self.times.len().div_ceil(most).max(1);
         let last = self.times.len().saturating_sub(1);
         let frames = || (0..self.times.len()).filter(move |frame| frame % stride == 0 || *frame == last);
+        // A page that computes the same motion needs only its times.
+        let is_computed = self.model.is_some_and(Model::is_exact);
+        let written = || frames().filter(move |_| !is_computed);
         let title = escaped(self.title);
         write!(
             f,
@@ -261,7 +264,7 @@ impl fmt::Display for Page<'_> {
             let position = |frame: usize| positions.get(frame).into_iter().flat_map(|place| place.iter().copied());
             write!(f, "{{name: {}, sides: [{}], round: {round}, ", Text(name), sides.join(","))?;
             write!(f, "profile: [{}], middle: {}, ", profile.join(","), vector(middle))?;
-            write!(f, "\nattitudes: {}, ", numbers(frames().flat_map(attitude)))?;
+            write!(f, "\nattitudes: {}, ", numbers(written().flat_map(attitude)))?;
             writeln!(f, "positions: {}}},", numbers(frames().flat_map(position)))?;
         }
         let rods: Vec<_> = self.rods.iter().map(|(body, point)| format!("[{body},{}]", vector(point))).collect();
@@ -274,7 +277,7 @@ impl fmt::Display for Page<'_> {
         for Chart { title, unit, logarithmic, lines } in self.charts {
             writeln!(f, "{{title: {}, unit: {}, logarithmic: {logarithmic}, lines: [", Text(title), Text(unit))?;
             for (name, values) in lines {
-                writeln!(f, "{{name: {}, values: {}}},", Text(name), numbers(frames().map(|frame| values[frame])))?;
+                writeln!(f, "{{name: {}, values: {}}},", Text(name), numbers(written().map(|frame| values[frame])))?;
             }
             writeln!(f, "]}},")?;
         }

@@ -86,13 +86,14 @@ fn numbers(variables: &[Variable]) -> String {
 fn structure(variables: &[Variable], fmi: Fmi) -> String {
     let outputs = || variables.iter().filter(|variable| variable.part == Part::Output);
     if fmi == Fmi::Three {
-        let of =
-            |kind: &str| outputs().map(|one| format!("<{kind} valueReference=\"{}\"/>", one.place)).collect::<String>();
+        let of = |kind: &str| {
+            outputs().map(|one| format!("<{kind} valueReference=\"{}\"/>", one.place)).collect::<Vec<_>>().concat()
+        };
         return of("Output") + &of("InitialUnknown");
     }
     // Every number is a variable, and they are numbered from one.
     let all = outputs().flat_map(|one| one.place + 1..one.place + 1 + one.len());
-    let unknowns: String = all.map(|index| format!("<Unknown index=\"{index}\"/>")).collect();
+    let unknowns = all.map(|index| format!("<Unknown index=\"{index}\"/>")).collect::<Vec<_>>().concat();
     format!("<Outputs>{unknowns}</Outputs><InitialUnknowns>{unknowns}</InitialUnknowns>")
 }
 
@@ -107,7 +108,8 @@ pub(super) fn description(
     let mut units: Vec<&str> = variables.iter().map(|one| one.unit.as_str()).filter(|unit| !unit.is_empty()).collect();
     units.sort_unstable();
     units.dedup();
-    let units: String = units.iter().map(|unit| format!("<Unit name=\"{}\"/>", escaped(unit))).collect();
+    let units: Vec<_> = units.iter().map(|unit| format!("<Unit name=\"{}\"/>", escaped(unit))).collect();
+    let units = units.concat();
     let (version, of_token, own, files) = match fmi {
         Fmi::Three => (
             "3.0",

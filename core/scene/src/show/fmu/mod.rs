@@ -86,7 +86,8 @@ fn digest(text: &str) -> u64 {
 fn unit(model: &Model, variables: &[variables::Variable], token: &str, fmi: Fmi) -> String {
     let of = prefix(model.declaration);
     let list = |numbers: &[f64]| numbers.iter().map(|one| format!("{one:?}")).collect::<Vec<_>>().join(", ");
-    let places: String = variables.iter().map(|variable| format!("{}, ", variable.place)).collect();
+    let places: Vec<_> = variables.iter().map(|variable| format!("{}, ", variable.place)).collect();
+    let places = places.concat();
     let mut values = vec![0.0];
     values.extend(&model.numbers);
     // A declaration without parameters has one that nothing reads.
