@@ -63,7 +63,8 @@ impl NonholonomicCheck {
         let Self { constraint, size, across, rate, speed, epsilon } = self;
         // Twelve printed digits of a velocity pass, as they do in an attitude; NaN fails.
         let allowed = epsilon * 1e4;
-        if !(across > size * (allowed * allowed)) {
+        let is_independent = across > size * (allowed * allowed);
+        if !is_independent {
             return Err(SetupError::RedundantConstraint { constraint });
         }
         if rate * rate <= size * speed * (allowed * allowed) {
