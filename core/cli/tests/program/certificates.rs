@@ -58,9 +58,9 @@ fn checked(arguments: &[&str], files: &[String], folder: &Path) -> String {
 }
 
 /// A table of what the checker says of certificates with these names.
-fn table(folder: &Path, certificates: Vec<(String, String)>) -> String {
+fn table(folder: &Path, certificates: &[(String, String)]) -> String {
     let files: Vec<String> = certificates.iter().map(|(name, _)| format!("{name}.json")).collect();
-    for (file, (_, text)) in files.iter().zip(&certificates) {
+    for (file, (_, text)) in files.iter().zip(certificates) {
         fs::write(folder.join(file), text).unwrap();
     }
     let head =
@@ -121,16 +121,16 @@ fn the_page_of_what_is_proved() {
         (name, printed(&folder, &["derive", path.to_str().unwrap(), "--certificate"]))
     };
     let tables = [
-        table(&folder, library.chain(joints).map(of).collect()),
-        table(&folder, declared.map(of).to_vec()),
-        table(&folder, scenes.iter().map(|path| of_scene(path)).collect()),
+        table(&folder, &library.chain(joints).map(of).collect::<Vec<_>>()),
+        table(&folder, &declared.map(of)),
+        table(&folder, &scenes.iter().map(|path| of_scene(path)).collect::<Vec<_>>()),
     ];
     let page = fs::read_to_string(PAGE).unwrap();
     let (mut made, mut rest) = (String::new(), page.as_str());
     for table in tables {
         let (before, behind) = rest.split_once("<!-- table -->\n").unwrap();
         let (_, behind) = behind.split_once("<!-- end -->").unwrap();
-        made += &format!("{before}<!-- table -->\n{table}<!-- end -->");
+        made = made + before + "<!-- table -->\n" + &table + "<!-- end -->";
         rest = behind;
     }
     made += rest;
