@@ -185,10 +185,6 @@ fn signature(declaration: &Declaration, header: &Header) -> TokenStream {
             /// The Lagrangian as declared.
             fn l(&self, velocity: &#vector, w: &Self::Advected) -> #scalar
         },
-        Role::Nonholonomic => quote_spanned! {span=>
-            /// The constraint as declared.
-            fn zero(&self, velocity: &#vector, w: &Self::Advected) -> #scalar
-        },
         Role::Lagrangian | Role::Constraint | Role::Hamiltonian => quote_spanned! {span=>
             /// The Lagrangian as declared.
             fn l_d(&self, f: &#square, w: &Self::Advected, h: #scalar) -> #scalar
@@ -204,6 +200,7 @@ fn signature(declaration: &Declaration, header: &Header) -> TokenStream {
                 eta_next: &#vector,
             ) -> #scalar
         },
+        Role::Nonholonomic => quote_spanned!(span=> fn zero(&self, velocity: &#vector, w: &Self::Advected) -> #scalar),
     }
 }
 
