@@ -192,12 +192,7 @@ fn signature(declaration: &Declaration, header: &Header) -> TokenStream {
         Role::Force => quote_spanned! {span=>
             /// The virtual work as declared.
             fn virtual_work(
-                &self,
-                f: &#square,
-                w: &Self::Advected,
-                h: #scalar,
-                eta: &#vector,
-                eta_next: &#vector,
+                &self, f: &#square, w: &Self::Advected, h: #scalar, eta: &#vector, eta_next: &#vector,
             ) -> #scalar
         },
         Role::Nonholonomic => quote_spanned!(span=> fn zero(&self, velocity: &#vector, w: &Self::Advected) -> #scalar),
