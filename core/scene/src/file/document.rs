@@ -36,9 +36,8 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let of_value = |value: &Spanned<DeValue<'_>>| over_time::of_value(value, path);
     let (mut control, mut wheel) = control::take(&mut rest, &of_value).map_err(located)?;
     let mut on = None;
-    let lagrangian = take(&mut rest, Role::Lagrangian, &mut on).map_err(located)?;
-    let force = take(&mut rest, Role::Force, &mut on).map_err(located)?;
-    let nonholonomic = take(&mut rest, Role::Nonholonomic, &mut on).map_err(located)?;
+    let mut own = |role| take(&mut rest, role, &mut on).map_err(located);
+    let (lagrangian, force, nonholonomic) = (own(Role::Lagrangian)?, own(Role::Force)?, own(Role::Nonholonomic)?);
     if let Some(name) = named_method(&rest) {
         return Err(located((span(document, &["run", "method"]), format!("`{name}` {METHODS}"))));
     }
@@ -47,10 +46,9 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     if file.body.is_none() && lagrangian.is_empty() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
-    (file.lagrangian, file.force, file.nonholonomic) = (lagrangian, force, nonholonomic);
-    file.over_time = over_time.into();
-    add(document, &mut file).map_err(located)?;
-    fixed(&file).map_or(Ok(()), |mistake| Err(located(mistake)))?;
+    (file.lagrangian, file.force, file.nonholonomic, file.over_time) =
+        (lagrangian, force, nonholonomic, over_time.into());
+    add(document, &mut file).and_then(|()| fixed(&file).map_or(Ok(()), Err)).map_err(located)?;
     if let Some(start) = document.get_ref().get("start") {
         file.start = Beginning::read(start, &file.group, file.orbit.as_ref()).map_err(located)?;
     }

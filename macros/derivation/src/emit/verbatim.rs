@@ -185,10 +185,6 @@ fn signature(declaration: &Declaration, header: &Header) -> TokenStream {
             /// The Lagrangian as declared.
             fn l(&self, velocity: &#vector, w: &Self::Advected) -> #scalar
         },
-        Role::Nonholonomic => quote_spanned! {span=>
-            /// The constraint as declared.
-            fn zero(&self, velocity: &#vector, w: &Self::Advected) -> #scalar
-        },
         Role::Lagrangian | Role::Constraint | Role::Hamiltonian => quote_spanned! {span=>
             /// The Lagrangian as declared.
             fn l_d(&self, f: &#square, w: &Self::Advected, h: #scalar) -> #scalar
@@ -196,14 +192,10 @@ fn signature(declaration: &Declaration, header: &Header) -> TokenStream {
         Role::Force => quote_spanned! {span=>
             /// The virtual work as declared.
             fn virtual_work(
-                &self,
-                f: &#square,
-                w: &Self::Advected,
-                h: #scalar,
-                eta: &#vector,
-                eta_next: &#vector,
+                &self, f: &#square, w: &Self::Advected, h: #scalar, eta: &#vector, eta_next: &#vector,
             ) -> #scalar
         },
+        Role::Nonholonomic => quote_spanned!(span=> fn zero(&self, velocity: &#vector, w: &Self::Advected) -> #scalar),
     }
 }
 

@@ -57,6 +57,12 @@ pub(super) fn arguments_from(role: Role, input: ParseStream, errors: &mut Errors
             skip_argument(input);
         }
     }
+    if let (Role::Nonholonomic, Some((key, _))) = (role, &arguments.continuous) {
+        // A rule that isn't its own adjoint would make steps of the first order.
+        let place = [key.span(); 2];
+        let usual = Discretisation { quadrature: Quadrature::Trapezoid, coordinates: Coordinates::Cayley, place };
+        arguments.discretisation.get_or_insert((key.clone(), usual));
+    }
     arguments
 }
 
@@ -113,30 +119,16 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             path.map_err(|_| syn::Error::new(input.span(), message))?;
             arguments.root = Some(input.call(Path::parse_mod_style)?);
         }
-        "zero" if role == Role::Nonholonomic => {
-            once(arguments.continuous.is_some());
+        name @ ("l" | "pace" | "zero" | "h") if role != Role::Constraint && known.contains(&name) => {
+            let place = if name == "pace" { &mut arguments.pace } else { &mut arguments.continuous };
+            once(place.is_some());
             equals(&key, input)?;
-            // A rule that isn't its own adjoint would make steps of the first order.
-            let place = [key.span(); 2];
-            let usual = Discretisation { quadrature: Quadrature::Trapezoid, coordinates: Coordinates::Cayley, place };
-            arguments.discretisation.get_or_insert((key.clone(), usual));
-            arguments.continuous = Some((key, input.parse()?));
-        }
-        "h" if role == Role::Hamiltonian => {
-            once(arguments.continuous.is_some());
-            equals(&key, input)?;
-            arguments.continuous = Some((key, input.parse()?));
+            *place = Some((key, input.parse()?));
         }
         expression if expression == role.key() => {
             once(arguments.expression.is_some());
             equals(&key, input)?;
             arguments.expression = Some((key, input.parse()?));
-        }
-        name @ ("l" | "pace") if role == Role::Lagrangian => {
-            let place = if name == "l" { &mut arguments.continuous } else { &mut arguments.pace };
-            once(place.is_some());
-            equals(&key, input)?;
-            *place = Some((key, input.parse()?));
         }
         "velocity" | "momentum" if has_velocity => {
             once(arguments.velocity.is_some());
@@ -148,8 +140,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
             arguments.displacement = Some((key, names));
         }
         "discretise" if has_velocity => {
-            // A constraint has a discretisation without being given one.
-            once(arguments.discretisation.as_ref().is_some_and(|(key, _)| key == "discretise"));
+            once(arguments.discretisation.is_some());
             equals(&key, input)?;
             without_quotes(&key, input)?;
             arguments.discretisation = Some((key, discretisation(input)?));
