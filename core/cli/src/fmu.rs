@@ -23,7 +23,7 @@ pub(crate) fn fmu(given: &ArgMatches) -> Result<(), Failure> {
             Err(why) => eprintln!("note: {}: the source alone, {why}", visible(&path.display().to_string())),
         }
         let archive = archive(&unit.files).ok_or_else(|| Failure::Output("the unit is too large".to_owned()))?;
-        output.write(&name(path, "fmu"), archive)?;
+        output.write(&name(path, "fmu"), &archive)?;
     }
     print(&output.to_string())
 }

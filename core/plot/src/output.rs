@@ -46,7 +46,7 @@ impl Output {
     }
 
     /// Writes one file, whole or not at all.
-    pub fn write(&mut self, name: &str, content: impl AsRef<[u8]>) -> Result<(), CannotWrite> {
+    pub fn write(&mut self, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), CannotWrite> {
         let content = content.as_ref();
         let (path, beside) = (self.folder.join(name), self.folder.join(format!(".{name}-{}", process::id())));
         let written = fs::write(&beside, content).and_then(|()| fs::rename(&beside, &path));

@@ -117,7 +117,7 @@ fn a_slider_is_a_number_of_the_file() {
     };
     assert!(apart("e₃") < 1e-10 && apart("e₁") > 1e-3, "{:e} {:e}", apart("e₃"), apart("e₁"));
     let faster = by_node(&folder, &page, (1, 1), "set(\"start: Ω₃\", 6.5); set(\"body.J_d 3\", 2.5);");
-    assert!(faster[0][2] != rows[0][2], "{faster:?}");
+    assert!((faster[0][2] - rows[0][2]).abs() > 0.1, "{faster:?}");
 }
 
 /// A step with functions of the engine says so, and agrees to rounding; scenes that no page computes have no sliders.

@@ -16,9 +16,9 @@ pub fn archive(files: &[(String, Vec<u8>)]) -> Option<Vec<u8>> {
         let place = u32::try_from(all.len()).ok()?;
         let mut head = Vec::new();
         // Version 2.0, names in UTF-8, stored, the time, and the first day of the calendar.
-        [20_u16, 1 << 11, 0, 0, 1 << 5 | 1].iter().for_each(|word| head.extend(word.to_le_bytes()));
-        [checksum(bytes), size, size].iter().for_each(|word| head.extend(word.to_le_bytes()));
-        [length, 0].iter().for_each(|word| head.extend(word.to_le_bytes()));
+        head.extend([20_u16, 1 << 11, 0, 0, 1 << 5 | 1].into_iter().flat_map(u16::to_le_bytes));
+        head.extend([checksum(bytes), size, size].into_iter().flat_map(u32::to_le_bytes));
+        head.extend([length, 0].into_iter().flat_map(u16::to_le_bytes));
         all.extend(b"PK\x03\x04");
         all.extend(&head);
         all.extend(path.as_bytes());
@@ -34,8 +34,8 @@ pub fn archive(files: &[(String, Vec<u8>)]) -> Option<Vec<u8>> {
     let size = u32::try_from(directory.len()).ok()?;
     all.extend(&directory);
     all.extend(b"PK\x05\x06");
-    [0, 0, count, count].iter().for_each(|word| all.extend(word.to_le_bytes()));
-    [size, place].iter().for_each(|word| all.extend(word.to_le_bytes()));
+    all.extend([0, 0, count, count].into_iter().flat_map(u16::to_le_bytes));
+    all.extend([size, place].into_iter().flat_map(u32::to_le_bytes));
     all.extend([0; 2]);
     Some(all)
 }
