@@ -197,7 +197,8 @@ where
         }
         let defect = self.run_on(&self.equations.code.defect, [(Array::Attitude, attitude)])[0];
         // As in other steppers: twelve printed digits pass, NaN fails.
-        if !(defect <= f64::EPSILON * 1e4) {
+        let is_in_group = defect <= f64::EPSILON * 1e4;
+        if !is_in_group {
             return Err(SetupError::NotInGroup { defect });
         }
         Ok(self.begun(attitude, velocity))
