@@ -108,7 +108,10 @@ fn together(folder: &Path, units: &[(&str, &str)], options: &[&str]) -> Option<i
     for (name, text) in units {
         fs::write(folder.join(name), text).expect("a file");
     }
-    let sources = units.iter().map(|(name, _)| *name).filter(|name| name.ends_with(".c"));
+    let sources = units
+        .iter()
+        .map(|(name, _)| *name)
+        .filter(|name| Path::new(name).extension().is_some_and(|found| found == "c"));
     let flags = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"];
     let mut compiler = Command::new("cc");
     compiler.args(flags).args(options).args(sources).args(["-o", "together", "-lm"]).current_dir(folder);
