@@ -146,7 +146,7 @@ pub enum SetupError {
         /// The constraint, from zero.
         constraint: usize,
     },
-    /// As many constraints on velocities as the group has dimensions, or more, leave no motion.
+    /// Constraints on velocities, as many as the group has dimensions or more, leave no motion.
     #[error(
         "{constraints} constraints on velocities leave no motion on a group of dimension {dimension}; leave some out"
     )]

@@ -45,7 +45,7 @@ fn binary(unit: &Fmu) -> Result<Vec<u8>, String> {
     }
     let folder = env::temp_dir().join(format!("liestep-fmu-{}-{}", unit.name, std::process::id()));
     let made = compiled(unit, &folder);
-    // What is left is in the folder of temporary files.
+    // The remainder lies in the folder of temporary files.
     let _ = fs::remove_dir_all(&folder);
     made.map_err(|cause| format!("as `cc` made no binary: {cause}"))
 }

@@ -59,7 +59,7 @@ const BY_LAGRANGIAN: &str = "#[lagrangian(group = SO3, velocity = Omega, advecte
     l = 0.5 * Omega.dot(&(J * Omega)) - m * g * w.dot(&rho), discretise = trapezoid(Cayley))]
 struct Top { J: Inertia, m: f64, g: f64, rho: Vector3<f64>, up: Vector3<f64> }";
 
-/// Where there is a Lagrangian the steps are those of its discretisation.
+/// The steps of a Hamiltonian with a Lagrangian are those of its discretisation.
 #[test]
 fn a_top_has_the_steps_of_its_lagrangian() {
     let rest = [1.0, 9.81, 0.1, 0.0, 0.3, 0.0, 0.0, 1.0];

@@ -58,7 +58,7 @@ def test_an_unknown_torque():
     fit = body.estimate(step=0.05, readings={"velocity": (run.velocity, 1e-5)}, known={"attitude": 1e-3}, force=1.0, axes="z")
     assert fit.converged and fit.inputs.shape == (60, 1)
     assert abs(fit.inputs[2:18, 0] - 0.5).max() < 0.02 and abs(fit.inputs[42:58, 0]).max() < 0.02
-    # The same by a parameter of one's own force.
+    # An input that is a parameter of one's own force.
     own = body + ls.force("SO3", work="h * u * (eta + eta_next).dot(axis) / 2", u=0.0, axis=[0, 0, 1])
     same = own.estimate(step=0.05, readings={"velocity": (run.velocity, 1e-5)}, known={"attitude": 1e-3}, inputs={"u": 1.0})
     assert same.converged and abs(same.inputs - fit.inputs).max() < 1e-6

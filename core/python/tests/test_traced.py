@@ -50,7 +50,7 @@ def test_jax_compiles_and_maps():
     assert np.array_equal(jax.jit(jax.vmap(jax.grad(last)))(masses), expected)
     end = lambda v: motion(v)["velocity"][-1]
     assert np.allclose(jax.jacfwd(end)(velocity), jax.jacrev(end)(velocity), rtol=0, atol=1e-13)
-    # Those of the run.
+    # The gradients of the run.
     by = np.zeros(len(run))
     by[-1] = 1
     assert jax.grad(last)(1.0) == run.gradient(energy=by)["m"]

@@ -35,7 +35,7 @@ pub trait Nonholonomic: Effect {
     fn reaction(&self, w: &Self::Advected) -> Vector<Self>;
 }
 
-/// What a start is checked by: squares and products of a constraint's covector and of the initial velocity.
+/// The check of a start: squares and products of a constraint's covector and of the initial velocity.
 #[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct NonholonomicCheck {

@@ -196,7 +196,7 @@ where
             return Err(SetupError::Method { cause });
         }
         let defect = self.run_on(&self.equations.code.defect, [(Array::Attitude, attitude)])[0];
-        // As in other steppers: twelve printed digits pass, NaN fails.
+        // Twelve printed digits pass, as in other steppers; NaN fails.
         let is_in_group = defect <= f64::EPSILON * 1e4;
         if !is_in_group {
             return Err(SetupError::NotInGroup { defect });

@@ -18,7 +18,8 @@
 //!
 //! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
 //! `methods → {collocation, hamiltonian, rotating, density}`, `{collocation, hamiltonian} → stepper`,
-//! `steered → {plant, forwards}`, `{density, forwards → {derivatives → tape, tangent} → {varied → course, slopes → limit}, pace} → {stepper, lengths}`,
+//! `steered → {plant, forwards}`,
+//! `{density, forwards → {derivatives → tape, tangent} → {varied → course, slopes → limit}, pace} → {stepper, lengths}`,
 //! `inputs → {tangent → composed, limit}` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
 //! {codes, linear}`.
 

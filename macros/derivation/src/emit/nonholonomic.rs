@@ -13,7 +13,7 @@ use crate::judged::{Choice, Findings};
 use crate::mathematics::symbolic::{covector_text, text};
 use crate::program::Form;
 
-/// What a scene with the constraint doesn't keep.
+/// The quantities that a scene with the constraint doesn't conserve.
 const NOT_KEPT: &str = "a step isn't symplectic; the energy is kept nearly, without the proof that a Poisson map has; \
                         momenta are kept along directions that satisfy the constraint";
 

@@ -64,7 +64,7 @@ pub enum StepRefusal {
     NoKinetic,
     /// A Hamiltonian has steps of its own.
     Hamiltonian,
-    /// As many constraints on velocities as the group has dimensions, or more, leave no motion.
+    /// Constraints on velocities, as many as the group has dimensions or more, leave no motion.
     Fixed {
         /// The number of constraints.
         constraints: usize,
