@@ -53,7 +53,7 @@ class Traced:
             elif kind.startswith(("f64", "SVector", "SMatrix")):
                 parameters[name] = np.asarray(value)
             else:
-                # A state of another group keeps its kind.
+                # An advected parameter of another kind keeps it.
                 parameters[name] = Carried(kind, tuple(value.ravel().tolist()))
         term = self.term.with_(**parameters)
         return Stepper(term, self.step, **self._method)
