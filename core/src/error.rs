@@ -140,16 +140,14 @@ pub enum SetupError {
     },
     /// A constraint on velocities demands nothing that those before it don't, at least where the motion starts.
     #[error(
-        "the constraint {constraint} (from zero) on velocities demands nothing that those before it don't, at least where the motion starts; leave it out, or start elsewhere"
+        "the constraint {constraint} (from zero) on velocities demands nothing that those before it don't, at least where the motion starts; give independent ones, or another start"
     )]
     RedundantConstraint {
         /// The constraint, from zero.
         constraint: usize,
     },
     /// Constraints on velocities, as many as the group has dimensions or more, leave no motion.
-    #[error(
-        "{constraints} constraints on velocities leave no motion on a group of dimension {dimension}; leave some out"
-    )]
+    #[error("{constraints} constraints on velocities leave no motion on a group of dimension {dimension}; give fewer")]
     NoMotion {
         /// The number of constraints.
         constraints: usize,

@@ -54,8 +54,8 @@ errors_say!(setup_errors: SetupError {
     OffVelocity { joint: 7, by: 0.5 } => ["the joint 7", "by 5e-1 (", "m/s", "`start_nearest`"];
     RedundantJoint { joint: 7, pivot: 0.0 } => ["the joint 7", "0e0"];
     ViolatedConstraint { constraint: 1, by: 0.5 } => ["the constraint 1", "5e-1", "one that satisfies it"];
-    RedundantConstraint { constraint: 1 } => ["the constraint 1", "those before it", "leave it out"];
-    NoMotion { constraints: 3, dimension: 3 } => ["3 constraints", "of dimension 3", "leave some out"];
+    RedundantConstraint { constraint: 1 } => ["the constraint 1", "those before it", "give independent ones"];
+    NoMotion { constraints: 3, dimension: 3 } => ["3 constraints", "of dimension 3", "give fewer"];
     InvalidStep { step: 1e-300 } => ["the step", "1e-300 s"];
     SingularKinetic { determinant: 1e-30, body: None } => ["the kinetic part is singular", "1e-30"];
     SingularKinetic { determinant: 1e-30, body: Some(7) }

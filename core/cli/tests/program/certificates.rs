@@ -161,9 +161,12 @@ fn a_certificate_of_the_text_in_c() {
     assert!(checked(&["--c", "c"], &files, &folder).contains("19 of 19 claims hold"));
     assert!(checked(&["--c", "certificate"], &files, &folder).contains("digest: WRONG"));
     let text = fs::read_to_string(folder.join("c")).unwrap();
-    let (before, behind) = text.split_once("static void finish").unwrap();
-    fs::write(folder.join("other"), format!("{before}static void finish{}", behind.replacen(" - x", " + x", 1)))
-        .unwrap();
+    let (before, behind) = text.split_once("static void rigid_body_finish").unwrap();
+    fs::write(
+        folder.join("other"),
+        format!("{before}static void rigid_body_finish{}", behind.replacen(" - x", " + x", 1)),
+    )
+    .unwrap();
     assert!(checked(&["--c", "other"], &files, &folder).contains("statements: WRONG"));
     let right = fs::read_to_string(folder.join("certificate")).unwrap();
     let wrong = right.replace("trace() / (2.0 * h)", "trace() / (3.0 * h)");

@@ -54,7 +54,7 @@ fn the_derivation_of_a_constraint_is_printed() {
     let text = printed(&folder, &["derive", "suslov.toml"]);
     assert!(text.contains("U(F) = μ + k₀ + λ A") && text.contains("a step isn't symplectic"), "{text}");
     let c = printed(&folder, &["derive", "suslov.toml", "--c"]);
-    assert!(c.contains("int liestep_step(const Stepper *stepper, State *state)"), "{c}");
+    assert!(c.contains("int rigid_body_nonholonomic_step(const rigid_body_nonholonomic_stepper *"), "{c}");
 }
 
 #[test]
