@@ -119,6 +119,24 @@ impl Multibody {
     }
 
     /// Adds a further term to a body, or to its rotation alone, as the [`effects`](crate::effects) of the library are.
+    ///
+    /// A constraint on velocities is refused at compile time:
+    ///
+    /// ```compile_fail,E0080
+    /// use liestep::effects::RigidBody;
+    /// use liestep::methods::Multibody;
+    /// use liestep::prelude::*;
+    ///
+    /// #[nonholonomic(group = SO3, velocity = Omega, zero = a.dot(&Omega))]
+    /// struct Suslov {
+    ///     a: Vector3<f64>,
+    /// }
+    ///
+    /// let J_d = NonstandardInertia::from_diagonal(Vector3::new(1.0, 2.0, 2.5)).unwrap();
+    /// let mut system = Multibody::new();
+    /// let body = system.body(RigidBody { J_d });
+    /// system.on(body, Suslov { a: Vector3::z() });
+    /// ```
     pub fn on<E>(&mut self, body: usize, term: E)
     where
         E: Effect<Scalar = f64, Group: BodyPart, Retraction = CayleyRetraction> + Send + Sync + 'static,

@@ -136,6 +136,9 @@ type VectorOf<E> = <<E as crate::mechanics::Term>::Group as LieGroup>::Vector;
 /// The body of a pair.
 type BodyOf<E> = <<E as crate::mechanics::Term>::Group as Pair>::Body;
 
+/// The message of a constraint on velocities, whose reactions a step of jointed bodies doesn't have.
+const CONSTRAINED: &str = "jointed bodies have no constraints on velocities; a `Stepper` of one scene has them";
+
 const NOT_QUADRATIC: &str = "systems hold terms whose continuous limit is quadratic in the velocity";
 
 /// The term on a body, with constants for a step of 1 s.
@@ -146,6 +149,7 @@ where
     E::Advected: Send + Sync,
 {
     const { assert!(E::FACTS.is_quadratic, "{}", NOT_QUADRATIC) }
+    const { assert!(E::FACTS.constraints == 0, "{}", CONSTRAINED) }
     Arc::new(OnBody(StepEffect::of(Arc::new(term), 1.0)))
 }
 
@@ -157,6 +161,7 @@ where
     E::Advected: Send + Sync,
 {
     const { assert!(E::FACTS.is_quadratic, "{}", NOT_QUADRATIC) }
+    const { assert!(E::FACTS.constraints == 0, "{}", CONSTRAINED) }
     Arc::new(OnPair(StepEffect::of(Arc::new(term), 1.0)))
 }
 
