@@ -7,6 +7,8 @@ use crate::mechanics::effect::{Effect, Matrix, Scalar, Vector};
 use crate::numbers::{Coordinates, Real, reported};
 use nalgebra::SimdRealField as _;
 
+roots!();
+
 /// A constraint that is linear in the velocity, `c(ξ, w) = A(w)·ξ = 0`: the discrete Lagrange–d'Alembert principle.
 ///
 /// A step solves `U(F, w) = μ + kick_before(w) + λ A(w)` together with the constraint at the increment, so that the
