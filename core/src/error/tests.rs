@@ -79,9 +79,6 @@ errors_say!(setup_errors: SetupError {
     NoForceGradient => ["`kick_derivative`", "force gradient"];
     NoSecondDerivatives => ["`kick_gradient`", "force gradient"];
     Unlike { lane: 3 } => ["lane 3", "another method"];
-    ViolatedConstraint { constraint: 2, by: 0.25 } => ["the constraint 2 (from zero)", "2.5e-1", "satisfies it"];
-    RedundantConstraint { constraint: 1 } => ["the constraint 1 (from zero)", "leave it out"];
-    NoMotion { constraints: 3, dimension: 3 } => ["3 constraints", "dimension 3", "leave some out"];
 });
 
 errors_say!(step_errors: StepError {
