@@ -236,7 +236,7 @@ fn momenta_of_varied_steps_are_kept() {
 
 /// `cargo test -p liestep-long-tests --test varying -- ten_million --ignored --nocapture`.
 #[test]
-#[ignore = "a minute"]
+#[ignore = "a minute: `cargo test -p liestep-long-tests --test varying ten_million -- --ignored --nocapture`"]
 fn momenta_over_ten_million_steps() {
     let [plain, compensated] = momenta(10_000_000);
     assert!(plain < 3e-12 && compensated < 1e-13);
@@ -368,7 +368,7 @@ fn a_density_over_the_pole() {
 
 /// `cargo test -p liestep-long-tests --test varying -- a_million --ignored --nocapture`.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: `cargo test -p liestep-long-tests --test varying a_million -- --ignored --nocapture`"]
 fn a_density_over_the_pole_a_million_times() {
     let tenths = over_the_pole(0.2, 1_000_000);
     let mean = tenths.iter().sum::<f64>() / 10.0;
