@@ -10,7 +10,7 @@ use super::parts::Parts;
 use crate::declaration::Declaration;
 use crate::error::LateError;
 
-/// A step in JavaScript, with the functions of [`c`](super::c): one constant, `heavyTopStep` of `HeavyTop`, which is also what
+/// A step in JavaScript, with the functions of [`c`](super::c()): one constant, `heavyTopStep` of `HeavyTop`, which is also what
 /// a module exports. The text loads nothing. A step without sine, cosine, exponential and logarithm, which are those of the
 /// engine, has the bits of the library, and the first line of the text says so.
 ///
@@ -63,7 +63,7 @@ pub fn javascript(declaration: &Declaration) -> Result<String, LateError> {
 ///
 /// # Errors
 ///
-/// The errors of [`c`](super::c).
+/// The errors of [`c`](super::c()).
 pub fn is_exact(declaration: &Declaration) -> Result<bool, LateError> {
     Ok(!has_functions_of_the_engine(&Parts::of(declaration)?))
 }
