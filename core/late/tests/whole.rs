@@ -3,6 +3,8 @@
 
 #[path = "whole/motions.rs"]
 mod motions;
+#[path = "whole/products.rs"]
+mod products;
 #[path = "whole/special_linear.rs"]
 mod special_linear;
 #[path = "whole/tangent.rs"]
