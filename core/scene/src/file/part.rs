@@ -8,7 +8,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::body::{INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
+use crate::file::body::{AnyInertia, INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
 use crate::file::mistake::SpanMessage;
 use crate::file::quantity::{self, Density, Length, Mass, PositiveScalar, Speed, Triple};
 use crate::file::shape::{BoxTable, RoundTable, Shape, SphereTable};
@@ -62,14 +62,14 @@ pub(crate) struct BodyTable {
 
 /// Principal moments of a body, or the zeros of a point mass.
 #[derive(Deserialize)]
-#[serde(try_from = "Triple<quantity::Inertia>")]
+#[serde(try_from = "AnyInertia<Triple<quantity::Inertia>>")]
 struct PrincipalMoments(Option<Inertia>);
 
-impl TryFrom<Triple<quantity::Inertia>> for PrincipalMoments {
+impl TryFrom<AnyInertia<Triple<quantity::Inertia>>> for PrincipalMoments {
     type Error = String;
 
-    fn try_from(moments: Triple<quantity::Inertia>) -> Result<Self, String> {
-        if moments.value == Vector3::zeros() {
+    fn try_from(moments: AnyInertia<Triple<quantity::Inertia>>) -> Result<Self, String> {
+        if moments.value.value == Vector3::zeros() {
             return Ok(Self(None));
         }
         Moments::try_from(moments).map(|moments| Self(Some(moments.J)))
