@@ -2,7 +2,6 @@
 
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop};
-use liestep::groups::LieGroup as _;
 use liestep::mechanics::{DiagonalNonstandardInertia, Effect as _, Inertia, InertiaError};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, Vector3};
