@@ -46,7 +46,6 @@ struct Memory {
     part: f64,
 }
 
-const OF_THIS_LAYOUT: StepError = StepError::NonFinite { what: "state of this layout" };
 const OF_A_LAW: StepError = StepError::NonFinite { what: "torque of a law" };
 
 impl Memory {
@@ -109,10 +108,6 @@ impl Devices {
     fn with_memory(inner: &[f64], memory: &Memory) -> Box<[f64]> {
         let last = inner.len() - 1;
         inner[..last].iter().copied().chain(memory.entries()).chain([inner[last]]).collect()
-    }
-
-    fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
-        if state.len() == self.layout.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
     }
 
     /// The parameters of a step of this start and length with momenta of the wheels and the held torque; with the length zero
@@ -252,7 +247,7 @@ impl Propagator for Devices {
     }
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        let (mut next, mut memory, report) = self.advance(self.checked(state)?, self.h)?;
+        let (mut next, mut memory, report) = self.advance(self.layout.checked(state)?, self.h)?;
         let (steps, last) = (state[state.len() - 1], next.len() - 1);
         next[last] = steps + 1.0;
         memory.part = 0.0;
@@ -260,23 +255,13 @@ impl Propagator for Devices {
         Ok(report)
     }
 
-    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
-        let mut next = self.checked(state)?.to_vec();
-        let mut iterations = 0;
-        for _ in 0..steps {
-            iterations += u64::from(self.step(&mut next)?.iterations);
-        }
-        state.copy_from_slice(&next);
-        Ok(iterations)
-    }
-
     fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
         let length = self.h * fraction;
         // So small a change would be lost in rounding. NaN isn't tiny.
         if fraction.abs() < f64::EPSILON * f64::EPSILON {
-            return Ok(self.checked(state)?.into());
+            return Ok(self.layout.checked(state)?.into());
         }
-        let (mut next, mut memory, _) = self.advance(self.checked(state)?, length)?;
+        let (mut next, mut memory, _) = self.advance(self.layout.checked(state)?, length)?;
         let last = next.len() - 1;
         next[last] = state[state.len() - 1];
         memory.part += length;
@@ -305,20 +290,20 @@ impl Propagator for Devices {
     }
 
     fn time(&self, state: &[f64]) -> f64 {
-        self.checked(state).map_or(f64::NAN, |state| {
+        self.layout.checked(state).map_or(f64::NAN, |state| {
             let last = state.len() - 1;
             self.h * state[last] + state[last - 1]
         })
     }
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
-        let found = self.checked(state).map(|state| self.rate(state, &self.memory(state)));
+        let found = self.layout.checked(state).map(|state| self.rate(state, &self.memory(state)));
         let found = found.unwrap_or_else(|_| Vector3::repeat(f64::NAN));
         velocity.iter_mut().zip(found.iter()).for_each(|(place, part)| *place = *part);
     }
 
     fn energy(&self, state: &[f64]) -> f64 {
-        let Ok(state) = self.checked(state) else { return f64::NAN };
+        let Ok(state) = self.layout.checked(state) else { return f64::NAN };
         let memory = self.memory(state);
         let numbers = self.numbers([self.time(state), 0.0], &memory.momenta, &memory.torques);
         let energy = |numbers: Vec<f64>| self.whole.borrow().energy_with(&self.inner(state), &numbers);
@@ -329,13 +314,13 @@ impl Propagator for Devices {
     }
 
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        match self.checked(state) {
+        match self.layout.checked(state) {
             Ok(state) => self.whole.borrow().spatial_momentum(&self.inner(state), momentum),
             Err(_) => momentum.fill(f64::NAN),
         }
     }
 
     fn defect(&self, state: &[f64]) -> f64 {
-        self.checked(state).map_or(f64::NAN, |state| self.whole.borrow().defect(&self.inner(state)))
+        self.layout.checked(state).map_or(f64::NAN, |state| self.whole.borrow().defect(&self.inner(state)))
     }
 }
