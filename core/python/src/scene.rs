@@ -6,7 +6,8 @@ use liestep::accuracy::{Accuracy, Choice};
 use liestep::motion::{AnyStepper, Propagator as _};
 use liestep::with::{Method, Scheme};
 use liestep_late::{
-    Course as _, Declaration, LateError, Question, QuestionError, Role, Whole, WholeError, for_accuracy, stepper,
+    Course as _, Declaration, LateError, Question, QuestionError, Role, Whole, WholeError, for_accuracy, layout,
+    stepper,
 };
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
@@ -131,7 +132,7 @@ impl Scene {
         course: &Course,
     ) -> Result<(RunRecord, Choice), Failure> {
         let accuracy = Accuracy { tolerance, horizon: course.until };
-        let layout = Whole::<Backend>::layout_of(self.declaration)?;
+        let layout = layout::<Backend>(self.declaration)?;
         let (attitude, velocity) = (start.attitude(&layout.factors)?, start.velocity(&layout.factors)?);
         let question = Question { accuracy, attitude: &attitude, velocity };
         let found = for_accuracy::<Backend>(self.declaration, &self.numbers, question);

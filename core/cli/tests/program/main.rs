@@ -8,6 +8,7 @@ mod devices;
 mod ensembles;
 mod firmware;
 mod groups;
+mod hamiltonian;
 mod import;
 mod joints;
 mod judged;

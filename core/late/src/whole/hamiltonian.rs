@@ -67,15 +67,24 @@ where
         if !(h.is_finite() && (h == 0.0 || (1.0 / h).is_finite())) {
             return Err(WholeError::Setup(SetupError::InvalidStep { step: h }));
         }
-        let equations = declaration.once(|| {
+        Ok(Self { equations: Self::equations(declaration)?, numbers: numbers.into(), h, parts })
+    }
+
+    /// The code of a declaration, written and prepared once.
+    fn equations(declaration: &'static Declaration) -> Result<Arc<Equations<B::Code>>, LateError> {
+        declaration.once(|| {
             let (programs, factors) = HamiltonianStep::of(declaration).map_err(LateError::Step)?;
             let carried = declaration.carried.iter().map(|one| one.shape.0 * one.shape.1).sum();
             let all = ready_each::<B>(&programs.all())?.try_into().map_err(|_| LateError::TooLarge)?;
             let count = |at: usize| u32::try_from(programs.all()[at].operations.len()).map_or(f64::INFINITY, f64::from);
             let operations = [count(0), count(1)];
             Ok(Equations { code: HamiltonianStep::from_all(all), layout: layout(carried, 0, &factors), operations })
-        })?;
-        Ok(Self { equations, numbers: numbers.into(), h, parts })
+        })
+    }
+
+    /// Names, units and places of the states.
+    pub(super) fn layout_of(declaration: &'static Declaration) -> Result<Layout, LateError> {
+        Ok(Self::equations(declaration)?.layout.clone())
     }
 
     fn run_on<const K: usize>(&self, program: &Ready<B::Code>, given: [(Array, &[f64]); K]) -> Vec<f64> {

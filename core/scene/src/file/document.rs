@@ -37,17 +37,19 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let (mut control, mut wheel) = control::take(&mut rest, &of_value).map_err(located)?;
     let mut on = None;
     let mut own = |role| take(&mut rest, role, &mut on).map_err(located);
-    let (lagrangian, force, nonholonomic) = (own(Role::Lagrangian)?, own(Role::Force)?, own(Role::Nonholonomic)?);
+    let (lagrangian, hamiltonian) = (own(Role::Lagrangian)?, own(Role::Hamiltonian)?);
+    let (force, nonholonomic) = (own(Role::Force)?, own(Role::Nonholonomic)?);
     if let Some(name) = named_method(&rest) {
         return Err(located((span(document, &["run", "method"]), format!("`{name}` {METHODS}"))));
     }
     let mut file =
         SceneFile::deserialize(Deserializer::from(rest)).map_err(|error| Mistake::of_toml(path, text, &error))?;
-    if file.body.is_none() && lagrangian.is_empty() {
+    if file.body.is_none() && lagrangian.is_empty() && hamiltonian.is_empty() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
-    (file.lagrangian, file.force, file.nonholonomic, file.over_time) =
-        (lagrangian, force, nonholonomic, over_time.into());
+    (file.lagrangian, file.hamiltonian, file.force, file.nonholonomic) = (lagrangian, hamiltonian, force, nonholonomic);
+    file.over_time = over_time.into();
+    beside(document, &file).map_or(Ok(()), Err).map_err(located)?;
     add(document, &mut file).and_then(|()| fixed(&file).map_or(Ok(()), Err)).map_err(located)?;
     if let Some(start) = document.get_ref().get("start") {
         file.start = Beginning::read(start, &file.group, file.orbit.as_ref()).map_err(located)?;
@@ -97,7 +99,8 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let at = |keys: &[&str]| place_of(text, &span(document, keys));
     let keys = ["accuracy", "steps_per_orbit"];
     let pace = keys.into_iter().find(|key| has(document, "run", key)).unwrap_or("step");
-    let body = if file.body.is_none() { "lagrangian" } else { "body" };
+    let energies = [("body", file.body.is_some()), ("hamiltonian", !file.hamiltonian.is_empty())];
+    let body = energies.into_iter().find(|(_, is_there)| *is_there).map_or("lagrangian", |(key, _)| key);
     let places = Places {
         body: at(&[body]),
         start: at(&["start"]),
@@ -108,6 +111,34 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     };
     file.origin = Origin { path: path.to_owned(), places };
     Ok(file)
+}
+
+/// Conflicts with a Hamiltonian, which has all terms in its text, and steps of its own.
+fn beside(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
+    file.hamiltonian.first()?;
+    let wrong = |keys: &[&str], message: &str| Some((span(document, keys), message.to_owned()));
+    let whole = "a Hamiltonian has all its terms in its text: write this into its `h`, or leave it out";
+    let is_there = |table: &&str| document.get_ref().contains_key(*table);
+    let tables = ["body", "lagrangian", "force", "nonholonomic", "control", "wheel"].into_iter().find(is_there);
+    if let Some(table) = tables.or_else(|| file.effects().next().map(|(effect, _)| effect.key)) {
+        return wrong(&[table], whole);
+    }
+    if let Some(one) = file.hamiltonian.get(1) {
+        return Some((one.span.clone(), whole.to_owned()));
+    }
+    if let Some(one) = file.over_time.first() {
+        return Some((
+            one.span.clone(),
+            "the parameters of a Hamiltonian don't change with time: give a value".to_owned(),
+        ));
+    }
+    if has(document, "run", "density") {
+        return wrong(&["run", "density"], "a Hamiltonian has equal steps: leave the density out");
+    }
+    match file.run.pace {
+        Pace::Accuracy(_) => wrong(&["run"], "a Hamiltonian has steps that you choose: give the run a `step`"),
+        Pace::Step { .. } => None,
+    }
 }
 
 /// Adds the terms of a file with a Lagrangian that has the kinetic energy, and finds the group.
@@ -136,13 +167,13 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage>
         );
         return Err((span(document, &[effect.key]), message));
     }
-    let first = file.lagrangian[0].span.clone();
+    let Some(DeclaredTerm { declaration, span: first, increments, .. }) = own().next().cloned() else { return Ok(()) };
     let library = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
-    let lagrangians = file.lagrangian.iter().map(|own| Ok(own.declaration));
+    let lagrangians = file.lagrangian.iter().chain(&file.hamiltonian).map(|own| Ok(own.declaration));
     let forces = file.force.iter().chain(&file.nonholonomic).map(|own| Ok(own.declaration));
     let terms = lagrangians.chain(library).chain(forces).collect::<Result<Vec<_>, _>>();
     let terms = terms.map_err(|error| of_term(&first, error))?;
-    let is_other = |one: &&DeclaredTerm| one.declaration.factors != file.lagrangian[0].declaration.factors;
+    let is_other = |one: &&DeclaredTerm| one.declaration.factors != declaration.factors;
     if let Some(one) = own().find(is_other) {
         return Err((one.span.clone(), "the terms of a scene are on one group, and this one is on another".to_owned()));
     }
@@ -151,7 +182,7 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage>
         let message = "nothing moves by a potential alone: a `lagrangian` has a kinetic energy, or the file a `body`";
         return Err((first, message.to_owned()));
     }
-    file.group = Group::of(sum, file.lagrangian[0].increments.clone()).map_err(|error| of_term(&first, error))?;
+    file.group = Group::of(sum, increments).map_err(|error| of_term(&first, error))?;
     file.sum = Some(sum);
     Ok(())
 }

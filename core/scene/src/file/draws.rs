@@ -97,7 +97,11 @@ pub(crate) const LISTED: [&str; 3] = ["control", "wheel", "pointing"];
 /// The tables whose values can be drawn.
 fn drawable() -> impl Iterator<Item = &'static str> {
     let effects = EFFECTS.iter().map(|effect| effect.key);
-    ["body", "orbit", "lagrangian", "force", "nonholonomic"].into_iter().chain(effects).chain(["start"]).chain(LISTED)
+    ["body", "orbit", "lagrangian", "hamiltonian", "force", "nonholonomic"]
+        .into_iter()
+        .chain(effects)
+        .chain(["start"])
+        .chain(LISTED)
 }
 
 impl SceneEnsemble {
