@@ -18,6 +18,7 @@ mod orbits;
 mod page;
 mod papers;
 mod pointing;
+mod readings;
 mod readme;
 mod reference;
 mod runs;
