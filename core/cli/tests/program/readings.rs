@@ -57,30 +57,30 @@ fn two_readings_of_a_field_are_its_rate() {
     assert!(fine.abs() < 0.01 * expected && (3.8..4.2).contains(&(coarse / fine)), "{coarse:e} {fine:e} {expected}");
 }
 
-/// Detumbling by two readings over an orbit ends at .17809 deg/s, which is that of the field's own change along the orbit;
-/// without this change, as by the effect `magnetic_damping`, it would be .11242 deg/s: by DOP853 of SciPy to 1e-11, from Euler's
-/// equations with `m = −k ḃ` and `m = −k b × Ω`. Moments and gain are those of a CubeSat of two units.
+/// Readings contain the change of the field along the orbit: by `m = −k ḃ` a CubeSat of two units, with 2 deg/s about each axis,
+/// ends half an orbit at 1.454613 deg/s, and by `m = −k b × Ω`, as the effect `magnetic_damping` has it, at 1.491817 deg/s. Both are
+/// Euler's equations by DOP853 of SciPy to 1e-11.
 #[test]
 fn readings_contain_the_change_of_the_field_along_the_orbit() {
     let folder = folder("readings_contain_the_change_of_the_field_along_the_orbit");
-    let law = "[[control]]\ntorque = \"(-k / every * (b - b_before)).cross(b)\"\nk = 1e4\nB = { equator = [0, 0, \"30 \
+    let law = "[[control]]\ntorque = \"(-k / every * (b - b_before)).cross(b)\"\nk = 1e4\nB = { equator = [0, 0, \"12 \
                µT\"] }\nadvected = { b = \"B\" }\n";
-    let effect = "[magnetic_damping]\nk = 1e4\nfield = { equator = [0, 0, \"30 µT\"] }\n";
-    for (terms, expected) in [(law, 0.178_087), (effect, 0.112_415)] {
-        let speed = |step: f64| {
-            let text = format!(
-                "title = \"An orbit\"\n[body]\nmoments = [0.0108, 0.0108, 0.0043]\nkinetic = \"geodesic\"\n[start]\neuler = \
-                 [0, 0, 0]\nvelocity = [\"20 deg/s\", \"20 deg/s\", \"20 deg/s\"]\n[orbit]\nperiod = 5801.23\nnormal = [0, -1, \
-                 0]\n[run]\nduration = 5801.2\nstep = {step}\n[output]\ncolumns = [\"velocity\"]\n{terms}"
-            );
-            let end = rows(&folder, &text).pop().unwrap();
-            Vector3::new(end[1], end[2], end[3]).norm().to_degrees()
-        };
-        // The error is of second order.
-        let [coarse, fine] = [speed(0.2), speed(0.1)];
-        let limit = (4.0 * fine - coarse) / 3.0;
-        assert!((limit - expected).abs() < 1e-3 * expected, "{terms}: {coarse} {fine} {limit}, not {expected}");
-    }
+    let effect = "[magnetic_damping]\nk = 1e4\nfield = { equator = [0, 0, \"12 µT\"] }\n";
+    let speed = |terms: &str, step: f64| {
+        let text = format!(
+            "title = \"An orbit\"\n[body]\nmoments = [0.0108, 0.0108, 0.0043]\nkinetic = \"geodesic\"\n[start]\neuler = [0, 0, \
+             0]\nvelocity = [\"2 deg/s\", \"2 deg/s\", \"2 deg/s\"]\n[orbit]\nperiod = 5801.23\nnormal = [0, -1, 0]\n[run]\n\
+             duration = 2900\nstep = {step}\n[output]\ncolumns = [\"velocity\"]\n{terms}"
+        );
+        let end = rows(&folder, &text).pop().unwrap();
+        Vector3::new(end[1], end[2], end[3]).norm().to_degrees()
+    };
+    // A difference of readings is late by half the time between them.
+    let [coarse, fine] = [speed(law, 0.2), speed(law, 0.1)];
+    let limit = 2.0 * fine - coarse;
+    assert!((limit - 1.454_613).abs() < 2e-5 && (fine - limit).abs() < 2e-4, "{coarse} {fine} {limit}");
+    let damped = speed(effect, 0.2);
+    assert!((damped - 1.491_817).abs() < 1e-4, "{damped}");
 }
 
 /// The nadir that a law reads has the length one wherever the planet is, and is its direction: at rest in space, after half a

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use liestep::methods::CompositionScheme;
 use liestep::with::Scheme;
 use liestep_derivation::Role;
 use liestep_late::{Declaration, LateError, Signal};

@@ -106,7 +106,6 @@ pub(crate) fn implementation(
     let declared_text = declared_text(&header, declaration, arguments);
     let item = page::documented(item, &page::page(declaration, chosen, &texts, equations, findings));
     let describe = emitter.describe();
-    let private = &header.private;
     let span = Span::mixed_site();
     let types = header.types(kinetic(chosen), &stages.constants_type, &stages.step_terms_type);
     let facts = stages::facts(&emitter, kernel, findings.self_adjointness.is_found());
