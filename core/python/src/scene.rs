@@ -42,7 +42,7 @@ impl Scene {
         let is_own = matches!(method.scheme, Scheme::Step | Scheme::Composition(_));
         let is_declared = is_own && !method.compensated && !method.varies();
         if self.has_force && !is_declared {
-            let message = "a scene with a force is made by its own step alone: leave the method out";
+            let message = "a scene with a force is made by its own step or a `composition` of it: take one, or leave the method out";
             return Err(Failure::Of("SetupError", message.to_owned()));
         }
         if self.changes.are_none() {

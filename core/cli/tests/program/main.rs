@@ -19,6 +19,7 @@ mod orbits;
 mod page;
 mod papers;
 mod pointing;
+mod readings;
 mod readme;
 mod reference;
 mod runs;

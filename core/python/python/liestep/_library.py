@@ -141,6 +141,14 @@ def drag(*, c: float, J: Any) -> Term:
     return _term("drag", c=c, J=J)
 
 
+def air_drag(*, c: Any, air: Any, J: Any) -> Term:
+    """Drag in air that turns: coefficient, N m s, the angular velocity of the air in space, rad/s, and the inertia of the body, kg m².
+
+    Along an orbit the air turns with the satellite's place by ``air=orbit.turning``.
+    """
+    return _term("air_drag", c=c, air=air, J=J)
+
+
 def magnetic_damping(*, k: float, field: Any, J: Any) -> Term:
     """Damping across a magnetic field of space, T, with the gain `k`, A m² s/T."""
     return _term("magnetic_damping", k=k, field=field, J=J)

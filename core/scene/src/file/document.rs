@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use liestep::methods::CompositionScheme;
 use liestep::with::Scheme;
 use liestep_derivation::Role;
 use liestep_late::{Declaration, LateError, Signal};
@@ -350,12 +351,12 @@ fn of_devices(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> 
     let at = span_of_law.or_else(|| file.wheel.first().map(|wheel| wheel.span.clone()))?;
     let is_of_steps = matches!(file.run.pace, Pace::Step { .. }) && !file.has_steps_of_its_own();
     let beside = [
-        (!file.group.is_rotation() || file.body.is_none(), at, "a `[body]`"),
+        (!file.group.is_rotation(), at, "a body that turns, a `[body]` or a `[lagrangian]` on `SO3`"),
         (!is_of_steps, span(document, &["run"]), "a `step`, and neither an accuracy, a density nor steps per orbit"),
         (
-            !matches!(file.run.method, Scheme::Step),
+            !matches!(file.run.method, Scheme::Step | Scheme::Composition(_)),
             span(document, &["run", "method"]),
-            "the scene's own step: leave `method` out",
+            "the scene's own step or a composition of it: take one, or leave `method` out",
         ),
     ];
     if let Some((_, at, what)) = beside.into_iter().find(|(is_odd, ..)| *is_odd) {
@@ -393,6 +394,23 @@ fn fixed(file: &SceneFile) -> Option<SpanMessage> {
     Some((last.span.clone(), message))
 }
 
+/// The reason why the step of a scene can't be composed by a scheme.
+fn of_composition(scheme: &CompositionScheme, file: &SceneFile) -> Option<String> {
+    let is_one_sided = |own: &[DeclaredTerm]| own.iter().any(|own| !own.declaration.is_self_adjoint);
+    if is_one_sided(&file.force) {
+        let message = "only steps that undo those of −h can be composed, and those with this `force` don't: give half of its \
+                       impulse to either end, as `h * tau.dot(eta + eta_next) / 2`";
+        return Some(message.to_owned());
+    }
+    if is_one_sided(&file.lagrangian) || is_one_sided(&file.nonholonomic) {
+        let message = "only steps that undo those of −h can be composed, and those of this Lagrangian don't";
+        return Some(message.to_owned());
+    }
+    let (name, base, order) = (scheme.name(), scheme.base(), file.order());
+    (base != order)
+        .then(|| format!("{name} composes a step of order {base}, and that of this scene is of order {order}"))
+}
+
 /// Conflicts with a method; those of a Lagrangian come first.
 fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
@@ -420,17 +438,11 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
             return wrong(&["run", "method"], message.to_owned());
         }
     }
-    if let Some(sum) = file.sum {
-        if !matches!(method, Scheme::Step | Scheme::Composition(_)) {
-            let message = format!("{} moves a body of the library; leave it out", kind(method));
-            return wrong(&["run", "method"], message);
-        }
-        if matches!(method, Scheme::Composition(_)) && !sum.is_self_adjoint && file.first_force().is_none() {
-            let message = "only steps that undo those of −h can be composed, and those of this Lagrangian don't";
-            return wrong(&["run", "method"], message.to_owned());
-        }
+    if file.sum.is_some() && !matches!(method, Scheme::Step | Scheme::Composition(_)) {
+        let message = format!("{} moves a body of the library; leave it out", kind(method));
+        return wrong(&["run", "method"], message);
     }
-    if !matches!(method, Scheme::Step)
+    if !matches!(method, Scheme::Step | Scheme::Composition(_))
         && let Some(force) = file.first_force()
     {
         let name = kind(method);
@@ -442,10 +454,8 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
         return wrong(&["run", "method"], message);
     }
     if let Scheme::Composition(scheme) = method
-        && scheme.base() != file.order()
+        && let Some(message) = of_composition(scheme, file)
     {
-        let (name, base, order) = (scheme.name(), scheme.base(), file.order());
-        let message = format!("{name} composes a step of order {base}, and that of this scene is of order {order}");
         return wrong(&["run", "method"], message);
     }
     if let Scheme::Splitting(_) | Scheme::Processed(_) | Scheme::Collocation(_) | Scheme::Exact = method

@@ -341,7 +341,7 @@ impl SceneFile {
 
     /// Order of the scene's own step; effects are kicks of second order.
     pub(crate) fn order(&self) -> u32 {
-        let is_free = self.effects().next().is_none() && self.own().next().is_none();
+        let is_free = self.effects().next().is_none() && self.own().next().is_none() && !self.has_devices();
         if is_free { self.kinetic().order() } else { 2 }
     }
 }
