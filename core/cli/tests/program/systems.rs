@@ -296,26 +296,27 @@ fn numbers_without_digits_have_their_place() {
     }
 }
 
-/// Two point masses of 1 kg and 0.5 kg on arms of a metre, one below the other.
+/// Two bodies of 1 kg and 0.5 kg with 0.1 kg m² about their centres, on arms of a metre, one below the other.
 fn double_pendulum(friction: &str, run: &str) -> String {
     format!(
-        "title = \"double\"\ngravity = {{ g = 9.81, up = [0, 0, 1] }}\n[[body]]\nname = \"a\"\nm = 1\nmoments = [0, 0, 0]\n\
-         [[body]]\nname = \"b\"\nm = 0.5\nmoments = [0, 0, 0]\n[[joint]]\nkind = \"pin\"\nbodies = [\"space\", \"a\"]\n\
+        "title = \"double\"\ngravity = {{ g = 9.81, up = [0, 0, 1] }}\n[[body]]\nname = \"a\"\nm = 1\nmoments = [0.1, 0.1, 0.1]\n\
+         [[body]]\nname = \"b\"\nm = 0.5\nmoments = [0.1, 0.1, 0.1]\n[[joint]]\nkind = \"pin\"\nbodies = [\"space\", \"a\"]\n\
          at = [[0, 0, 0], [0, 0, 1]]\naxes = [[0, 1, 0], [0, 1, 0]]\nangle = 1.2\nrate = 0.3\n{friction}[[joint]]\nkind = \"pin\"\n\
          bodies = [\"a\", \"b\"]\nat = [[0, 0, 0], [0, 0, 1]]\naxes = [[0, 1, 0], [0, 1, 0]]\nangle = -0.5\nrate = 1\n{friction}\
          [run]\nduration = 0.5\n{run}\n"
     )
 }
 
-/// The places of both masses after half a second, x and z, by Runge and Kutta of the textbook's equations for the angles.
+/// The places of both centres after half a second, x and z, by Runge and Kutta of the textbook's equations for the angles.
 fn double_pendulum_by_hand(c: f64) -> [f64; 4] {
-    let (m, n, g) = (1.0, 0.5, 9.81);
+    let (m, n, J, g) = (1.0, 0.5, 0.1, 9.81);
     let rates = |[one, two, u, v]: [f64; 4]| {
         let (sine, cosine) = f64::sin_cos(one - two);
         let first = -n * sine * v * v - (m + n) * g * one.sin() - c * u + c * (v - u);
         let second = n * sine * u * u - n * g * two.sin() - c * (v - u);
-        let determinant = (m + n) * n - n * n * cosine * cosine;
-        [u, v, (n * first - n * cosine * second) / determinant, ((m + n) * second - n * cosine * first) / determinant]
+        let (of_one, of_two, both) = (m + n + J, n + J, n * cosine);
+        let determinant = of_one * of_two - both * both;
+        [u, v, (of_two * first - both * second) / determinant, (of_one * second - both * first) / determinant]
     };
     let along = |state: [f64; 4], rate: [f64; 4], h: f64| [0, 1, 2, 3].map(|k| state[k] + h * rate[k]);
     let (mut state, h) = ([1.2, 0.7, 0.3, 1.3], 1e-4);
@@ -345,7 +346,7 @@ fn an_accuracy_of_several_bodies() {
         println!("{choice}off by {:e}", off(&run, 0.0));
         // The error is relative to all attitudes and places, whose norm is about 4.
         assert!(choice.error <= tolerance && off(&run, 0.0) < 5.0 * tolerance, "{choice}{:e}", off(&run, 0.0));
-        assert!(choice.offers().len() > 5 && choice.steps == run.steps());
+        assert!(choice.offers().len() == 5 && choice.steps == run.steps());
         assert!(tolerance > 1e-6 || choice.chosen().order > 2, "{choice}");
     }
     let text = double_pendulum("", "");
@@ -373,7 +374,7 @@ fn an_ensemble_of_several_bodies() {
         1,
     );
     let ensemble = "[ensemble]\nmembers = 6\nseed = 3\ndraw.body.seat.m = { from = 1, to = 3 }\n\
-                    draw.gravity.g = { mean = 9, deviation = \"1 %\" }\nhistogram.left_x = { from = -1, to = 1, count = 2 }\n";
+                    draw.gravity.g = { mean = 9, deviation = 0.1 }\nhistogram.left_x = { from = -1, to = 1, count = 2 }\n";
     std::fs::write(folder.join("swing.toml"), format!("{text}{ensemble}")).unwrap();
     let told = printed(&folder, &["ensemble", "swing.toml", "--out", "."]);
     assert!(

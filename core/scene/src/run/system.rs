@@ -138,7 +138,9 @@ impl Moving for System {
             let make = move |h| Ok(AnyStepper::new(system.multibody(scheme, h)?.0));
             Candidate { scheme, make: Box::new(make) }
         };
-        let candidates: Vec<_> = of_any_group(self.joint_with_friction().is_none()).map(candidate).collect();
+        // A point mass has no step back, either.
+        let has_steps_back = self.joint_with_friction().is_none() && self.bodies.iter().all(|body| body.J.is_some());
+        let candidates: Vec<_> = of_any_group(has_steps_back).map(candidate).collect();
         let beside = displaced(attitude);
         let chosen = choose(&candidates, accuracy, [attitude, &beside], &velocity);
         chosen.map(|(_, choice)| choice).map_err(Stop::Accuracy)
