@@ -6,8 +6,9 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex};
 
 use clap::ArgMatches;
+use liestep::motion::{AnyStepper, Integrator as _};
 use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
-use liestep_scene::{BodyIntegrator, Column, EndHistogram, MemberEvent, Mistake, SceneEnsemble, SceneFile, Spread};
+use liestep_scene::{Column, EndHistogram, Mistake, Scene, SceneEnsemble, Spread, Watch};
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
@@ -63,7 +64,7 @@ fn cannot(path: &Path, error: &dyn std::fmt::Display) -> ProgramFailure {
 /// read. Returns the numbers of failed members and of missing chunks.
 fn made(
     path: &Path,
-    scene: &SceneFile,
+    scene: &Scene,
     drawn: &SceneEnsemble,
     local: (&Local<'_>, bool),
     store: (&Store, &Path),
@@ -91,11 +92,11 @@ fn made(
 }
 
 /// Simulates the chunks of members, in lanes or one by one, and prints their outcome.
-fn finished<M: BodyIntegrator + 'static>(
+fn finished(
     path: &Path,
-    scene: &SceneFile,
+    scene: &Scene,
     drawn: &SceneEnsemble,
-    members: Ensemble<M>,
+    members: Ensemble<AnyStepper>,
     (local, is_share): (&Local<'_>, bool),
     (store, folder): (&Store, &Path),
 ) -> Result<[u64; 2], ProgramFailure> {
@@ -124,7 +125,7 @@ fn finished<M: BodyIntegrator + 'static>(
 }
 
 /// The plan of an ensemble. The file's text identifies it.
-fn plan<M: BodyIntegrator + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, members: Ensemble<M>) -> Ensemble<M> {
+fn plan(scene: &Scene, drawn: &SceneEnsemble, members: Ensemble<AnyStepper>) -> Ensemble<AnyStepper> {
     let mut plan = members.seed(drawn.seed);
     if let Some(every) = drawn.every {
         plan = plan.every(every);
@@ -164,9 +165,8 @@ fn plan<M: BodyIntegrator + 'static>(scene: &SceneFile, drawn: &SceneEnsemble, m
             own.numbers(run, std::slice::from_ref(&column)).get(place).copied().unwrap_or(f64::NAN)
         });
     }
-    scene
-        .member_events()
-        .fold(plan.keep(["t"], |run| [run.stepper.time(run.state)]), |plan, event| plan.section(section(&own, event)))
+    let plan = plan.keep(["t"], |run| [run.stepper.time(run.state)]);
+    scene.events().zip(scene.watches()).fold(plan, |plan, event| plan.section(section(&own, event)))
 }
 
 /// The name of a column's histogram beside its moments.
@@ -175,10 +175,8 @@ fn name_of(column: &str) -> String {
 }
 
 /// The section of an event: its times, and the scene's columns then.
-fn section<M: BodyIntegrator + 'static>(
-    scenes: &Arc<Scenes>,
-    (name, event, function, stops): MemberEvent<M>,
-) -> Section<M> {
+fn section(scenes: &Arc<Scenes>, (name, watch): (&str, Watch)) -> Section<AnyStepper> {
+    let Watch { event, function, stops, .. } = watch;
     let section = Section::new(event, function);
     let section = if stops { section.until() } else { section };
     let section = section.keep([&format!("{name}_t")], |now| [now.time()]);
@@ -191,12 +189,12 @@ fn section<M: BodyIntegrator + 'static>(
 }
 
 /// The numbers of the scene's columns: each with its column, its place there and its name.
-fn columns(scene: &SceneFile) -> impl Iterator<Item = (Column, usize, &str)> {
+fn columns(scene: &Scene) -> impl Iterator<Item = (Column, usize, &str)> {
     let numbers = |column| Column::names(column).enumerate().map(|(place, name)| (Column::clone(column), place, name));
     scene.columns().iter().flat_map(numbers)
 }
 
-fn told_of(scene: &SceneFile, drawn: &SceneEnsemble, report: &Report, (is_share, folder): (bool, &str)) -> String {
+fn told_of(scene: &Scene, drawn: &SceneEnsemble, report: &Report, (is_share, folder): (bool, &str)) -> String {
     let of_share = if is_share { ", in this share" } else { "" };
     let SceneEnsemble { members, seed, .. } = drawn;
     let mut text = format!(

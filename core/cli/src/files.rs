@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::ArgMatches;
 use liestep_plot::output::Output;
-use liestep_scene::SceneFile;
+use liestep_scene::Scene;
 
 use crate::failure::Failure;
 
@@ -31,8 +31,8 @@ pub(crate) fn folder(given: &ArgMatches) -> Result<Output, Failure> {
 }
 
 /// Reads all files first, so that a mistake in the last is reported at once.
-pub(crate) fn scenes(paths: &[&PathBuf]) -> Result<Vec<SceneFile>, Failure> {
-    paths.iter().map(|path| liestep_scene::read(path).map_err(Failure::from)).collect()
+pub(crate) fn scenes(paths: &[&PathBuf]) -> Result<Vec<Scene>, Failure> {
+    paths.iter().map(|path| Scene::read(path).map_err(Failure::from)).collect()
 }
 
 /// The file's name with another extension.

@@ -29,13 +29,7 @@ pub(crate) fn fmu(given: &ArgMatches) -> Result<(), Failure> {
 }
 
 fn unit(path: &Path, fmi: Fmi) -> Result<Fmu, Failure> {
-    match Scene::read(path)? {
-        Scene::Body(scene) => Ok(scene.fmu(&path.file_stem().unwrap_or_default().to_string_lossy(), fmi)?),
-        Scene::System(_) => {
-            let path = path.display();
-            Err(Failure::Command(format!("{path} has several bodies, and a unit has one so far")))
-        }
-    }
+    Ok(Scene::read(path)?.fmu(&path.file_stem().unwrap_or_default().to_string_lossy(), fmi)?)
 }
 
 /// The source compiled for this machine, or the reason why it isn't.

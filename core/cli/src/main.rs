@@ -25,7 +25,7 @@ use liestep::recording::{Column, Csv, Sink, SinkError};
 use liestep_arrow::ArrowStream;
 use liestep_derivation::suggestion;
 use liestep_plot::output::Output;
-use liestep_scene::{Form, Import, Mistake, Run, Scene, SceneFile, System, visible};
+use liestep_scene::{Form, Import, Mistake, Run, Scene, visible};
 
 use failure::Failure;
 use files::{different_files, files, folder, name};
@@ -70,16 +70,13 @@ fn run(given: &ArgMatches) -> Result<(), Failure> {
         if paths.len() > 1 {
             eprintln!("[{number}/{}] {}", paths.len(), visible(&path.display().to_string()));
         }
-        match scene {
-            Scene::Body(scene) => run_body(given, path, scene, &mut output)?,
-            Scene::System(system) => run_system(given, path, system, &mut output)?,
-        }
+        run_scene(given, path, scene, &mut output)?;
     }
     print(&output.to_string())
 }
 
-fn run_body(given: &ArgMatches, path: &Path, scene: &SceneFile, output: &mut Output) -> Result<(), Failure> {
-    let run = simulate(given, path, output, |progress, table| scene.run_with(progress, table))?;
+fn run_scene(given: &ArgMatches, path: &Path, scene: &Scene, output: &mut Output) -> Result<(), Failure> {
+    let run = simulate(given, path, output, scene)?;
     let picture = scene.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
     output.write(&name(path, "svg"), &picture)?;
     tables_have_grown(given, path, output)?;
@@ -101,26 +98,6 @@ fn run_body(given: &ArgMatches, path: &Path, scene: &SceneFile, output: &mut Out
     Ok(())
 }
 
-fn run_system(given: &ArgMatches, path: &Path, system: &System, output: &mut Output) -> Result<(), Failure> {
-    let run = simulate(given, path, output, |progress, table| system.run_with(progress, table))?;
-    let picture = system.picture(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
-    output.write(&name(path, "svg"), &picture)?;
-    tables_have_grown(given, path, output)?;
-    if given.get_flag("csv") && system.events().next().is_some() {
-        let table = system.event_table(&run).map_err(|cause| Failure::Output(cause.to_string()))?;
-        output.write(&name(path, "events.csv"), &table)?;
-    }
-    if given.get_flag("html") {
-        output.write(&name(path, "html"), &system.page(&run))?;
-    }
-    notes(&run);
-    print(&(system.summary(&run) + &system.end_error(&run)))?;
-    if let Some(sweep) = system.sweep() {
-        eprintln!("note: `liestep sweep` runs the {} scenes of the file's sweep", sweep.points.len());
-    }
-    Ok(())
-}
-
 /// Prints remarks about the file.
 fn notes(run: &Run) {
     run.notes().iter().for_each(|note| eprintln!("note: {}", visible(&note.to_string())));
@@ -137,12 +114,7 @@ fn tables_have_grown(given: &ArgMatches, path: &Path, output: &mut Output) -> Re
 }
 
 /// The run; its tables are written while it grows.
-fn simulate(
-    given: &ArgMatches,
-    path: &Path,
-    output: &Output,
-    run: impl for<'a> FnOnce(&'a mut dyn FnMut(f64), Option<&'a mut dyn Sink>) -> Result<Run, Mistake>,
-) -> Result<Run, Mistake> {
+fn simulate(given: &ArgMatches, path: &Path, output: &Output, scene: &Scene) -> Result<Run, Mistake> {
     let mut progress = Progress::new();
     let mut show = |share| progress.show(&format_args!("{:>3.0} %", 100.0 * share));
     let sink = |kind: &'static str| -> Box<dyn Sink> {
@@ -151,7 +123,7 @@ fn simulate(
     };
     let mut tables = Tables(tables(given).map(sink).collect());
     let has_tables = !tables.0.is_empty();
-    run(&mut show, has_tables.then_some(&mut tables as &mut dyn Sink))
+    scene.run_with(&mut show, has_tables.then_some(&mut tables as &mut dyn Sink))
 }
 
 /// A sink that writes several tables of one run.
@@ -190,26 +162,18 @@ fn check(given: &ArgMatches) -> Result<(), Failure> {
 
 /// A description of a file, after the first step of each of its scenes.
 fn checked(path: &Path) -> Result<String, Failure> {
-    let scene = match Scene::read(path)? {
-        Scene::Body(scene) => scene,
-        Scene::System(system) => {
-            let first = system.first(1)?;
-            notes(&first);
-            let changes = system.changes(&first);
-            for (_, point) in system.sweep().map(|sweep| sweep.points.as_slice()).unwrap_or_default() {
-                point.first(1)?;
-            }
-            return Ok(format!("{}\n{changes}", system.about()));
-        }
-    };
+    let scene = Scene::read(path)?;
+    let about = scene.about() + "\n";
     // The trial runs for an accuracy take as long as a run, so they are left out.
-    if !scene.asks_for_accuracy() {
-        notes(&scene.first(1)?);
-        for (_, point) in scene.sweep().map(|sweep| sweep.points.as_slice()).unwrap_or_default() {
-            point.first(1)?;
-        }
+    if scene.asks_for_accuracy() {
+        return Ok(about);
     }
-    Ok(scene.about() + "\n")
+    let first = scene.first(1)?;
+    notes(&first);
+    for (_, point) in scene.sweep().map(|sweep| sweep.points.as_slice()).unwrap_or_default() {
+        point.first(1)?;
+    }
+    Ok(about + &scene.changes(&first))
 }
 
 /// The forms of a derivation, by their flags.
@@ -238,17 +202,11 @@ fn derive(given: &ArgMatches) -> Result<(), Failure> {
         return print(&format!("{name}\n\n{text}"));
     }
     if Path::new(name).extension().is_some_and(|ending| ending == "toml") {
-        return print(&match (Scene::read(name)?, form) {
-            (Scene::Body(scene), None) => scene.derivation(),
-            (Scene::Body(scene), Some(form)) => {
-                scene.written(form).map_err(|cause| Failure::Command(cause.to_string()))?
-            }
-            (Scene::System(system), None) => system.derivation(),
-            (Scene::System(_), Some(_)) => {
-                let message = "of several bodies there is the derivation as text: leave the form out";
-                return Err(Failure::Command(message.to_owned()));
-            }
-        });
+        let scene = Scene::read(name)?;
+        let Some(form) = form else { return print(&scene.derivation()) };
+        let none = || "of several bodies there is the derivation as text: leave the form out".to_owned();
+        let written = scene.written(form).ok_or_else(|| Failure::Command(none()))?;
+        return print(&written.map_err(|cause| Failure::Command(cause.to_string()))?);
     }
     let names: Vec<_> = liestep_scene::derived().collect();
     let nearest = suggestion(name, names.iter().map(String::as_str));

@@ -3,19 +3,19 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
-use liestep::motion::Moment;
+use liestep::motion::{AnyStepper, Moment};
 use liestep_ensemble::{Member, Run};
-use liestep_scene::{BodyIntegrator, Column, SceneEnsemble, SceneFile, Spread};
+use liestep_scene::{Column, Scene, SceneEnsemble, Spread};
 
 /// The scene of a file, and the draws of a member's own scene where columns depend on what is drawn.
 pub(crate) struct Scenes {
-    file: SceneFile,
+    file: Scene,
     drawn: Option<SceneEnsemble>,
     seed: u64,
 }
 
 /// A member by its number, with its scene; none for a member that can't exist.
-type MemberScene = (Arc<Scenes>, u64, Option<SceneFile>);
+type MemberScene = (Arc<Scenes>, u64, Option<Scene>);
 
 thread_local! {
     /// The last member of this thread.
@@ -23,18 +23,18 @@ thread_local! {
 }
 
 impl Scenes {
-    pub(crate) fn new(file: &SceneFile, drawn: &SceneEnsemble) -> Arc<Self> {
+    pub(crate) fn new(file: &Scene, drawn: &SceneEnsemble) -> Arc<Self> {
         let own = drawn.draws_what_columns_read().then(|| drawn.clone());
         Arc::new(Self { file: file.clone(), drawn: own, seed: drawn.seed })
     }
 
     /// The scene of the file, which is that of all members but for drawn numbers.
-    pub(crate) fn file(&self) -> &SceneFile {
+    pub(crate) fn file(&self) -> &Scene {
         &self.file
     }
 
     /// The numbers of these columns of a member now; none where the member can't exist.
-    pub(crate) fn numbers<M: BodyIntegrator>(self: &Arc<Self>, run: &Run<'_, M>, columns: &[Column]) -> Vec<f64> {
+    pub(crate) fn numbers(self: &Arc<Self>, run: &Run<'_, AnyStepper>, columns: &[Column]) -> Vec<f64> {
         let now = Moment::of_step(run.stepper, run.state);
         let Some(drawn) = &self.drawn else { return self.file.numbers(columns, &now) };
         LAST.with_borrow_mut(|last| {

@@ -8,7 +8,7 @@ use std::thread;
 
 use clap::ArgMatches;
 use liestep_plot::output::Output;
-use liestep_scene::{Mistake, Scene, SceneFile, Sweep, System};
+use liestep_scene::{Mistake, Scene, Sweep};
 
 use crate::failure::Failure;
 use crate::files::{different_files, folder, name};
@@ -17,47 +17,29 @@ use crate::output::print;
 pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
     let paths = different_files(given)?;
     let scenes: Vec<Scene> = paths.iter().map(Scene::read).collect::<Result<_, _>>()?;
-    let has_sweep = |scene: &Scene| match scene {
-        Scene::Body(scene) => scene.sweep().is_some(),
-        Scene::System(system) => system.sweep().is_some(),
-    };
-    if let Some((path, _)) = paths.iter().zip(&scenes).find(|(_, scene)| !has_sweep(scene)) {
+    if let Some((path, _)) = paths.iter().zip(&scenes).find(|(_, scene)| scene.sweep().is_none()) {
         return Err(Mistake::no_table(path, "sweep").into());
     }
     let mut output = folder(given)?;
     let mut stopped = 0;
-    for (path, scene) in paths.iter().zip(&scenes) {
-        stopped += match scene {
-            Scene::Body(scene) => scene.sweep().map(|sweep| {
-                rows(path, sweep, SceneFile::end_names, |scene| scene.run().map(|run| scene.end(&run)), &mut output)
-            }),
-            Scene::System(system) => system.sweep().map(|sweep| {
-                rows(path, sweep, System::end_names, |system| system.run().map(|run| system.end(&run)), &mut output)
-            }),
-        }
-        .unwrap_or(Ok(0))?;
+    for (path, sweep) in paths.iter().zip(scenes.iter().filter_map(Scene::sweep)) {
+        stopped += rows(path, sweep, &mut output)?;
     }
     print(&output.to_string())?;
     if stopped == 0 { Ok(()) } else { Err(Failure::Runs(format!("{stopped} scenes of the sweep stopped"))) }
 }
 
 /// Writes the table of a sweep; returns how many of its scenes stopped.
-fn rows<S: Sync>(
-    path: &Path,
-    sweep: &Sweep<S>,
-    names: impl Fn(&S) -> Vec<String>,
-    end: impl Fn(&S) -> Result<Vec<f64>, Mistake> + Sync,
-    output: &mut Output,
-) -> Result<usize, Failure> {
+fn rows(path: &Path, sweep: &Sweep<Scene>, output: &mut Output) -> Result<usize, Failure> {
     // Another name than the table of a run.
     let name = name(path, "sweep.csv");
     let (mut file, mut stopped) = (output.grows(&name), 0);
     let points = &sweep.points;
-    let ends = points.first().map(|(_, scene)| names(scene)).unwrap_or_default();
+    let ends = points.first().map(|(_, scene)| scene.end_names()).unwrap_or_default();
     file.add(&format!("{}\n", sweep.names.iter().chain(&ends).map(String::as_str).collect::<Vec<_>>().join(",")))?;
     in_order(
         points,
-        |(_, scene): &(Vec<String>, S)| end(scene),
+        |(_, scene): &(Vec<String>, Scene)| scene.run().map(|run| scene.end(&run)),
         |(values, _), end| {
             let mut row = values.join(",");
             match end {

@@ -69,27 +69,17 @@ impl File {
     /// A description of the terms and of the steps.
     #[getter]
     fn about(&self) -> String {
-        match &self.0 {
-            Scene::Body(scene) => scene.about(),
-            Scene::System(system) => system.about(),
-        }
+        self.0.about()
     }
 
     #[getter]
     fn title(&self) -> &str {
-        match &self.0 {
-            Scene::Body(scene) => scene.title(),
-            Scene::System(system) => system.title(),
-        }
+        self.0.title()
     }
 
     /// The state at the start, for a loop.
     fn start(&self) -> PyResult<State> {
-        let started = match &self.0 {
-            Scene::Body(scene) => scene.stepper(),
-            Scene::System(system) => system.stepper(),
-        };
-        let (_, state) = started.map_err(Failure::from)?;
+        let (_, state) = self.0.stepper().map_err(Failure::from)?;
         self.resume(state.numbers().to_vec())
     }
 
@@ -103,10 +93,7 @@ impl File {
         let made = py.detach(|| {
             let signals = Signals::new();
             let mut table = InterruptibleColumns(&mut columns, &signals);
-            let made = match &self.0 {
-                Scene::Body(scene) => scene.run_with(&mut |_| (), Some(&mut table)),
-                Scene::System(system) => system.run_with(&mut |_| (), Some(&mut table)),
-            };
+            let made = self.0.run_with(&mut |_| (), Some(&mut table));
             made.map_err(|mistake| signals.into_failure().unwrap_or_else(|| mistake.into()))
         });
         let run = made?;
@@ -119,10 +106,7 @@ impl FileRun {
     /// Lines about the start and the end of the run.
     #[getter]
     fn summary(&self) -> String {
-        match &self.scene {
-            Scene::Body(scene) => scene.summary(&self.run),
-            Scene::System(system) => system.summary(&self.run),
-        }
+        self.scene.summary(&self.run)
     }
 
     #[getter]
@@ -133,10 +117,7 @@ impl FileRun {
     /// The events that occurred: a name, a time, and whether the quantity rose.
     #[getter]
     fn events(&self) -> Vec<(String, f64, bool)> {
-        let names: Vec<&str> = match &self.scene {
-            Scene::Body(scene) => scene.events().collect(),
-            Scene::System(system) => system.events().collect(),
-        };
+        let names: Vec<&str> = self.scene.events().collect();
         let happened = self.run.happenings().iter();
         happened
             .map(|one| (names.get(one.event).map_or("", |name| name).to_owned(), one.sample.time, one.rising))
@@ -144,18 +125,11 @@ impl FileRun {
     }
 
     fn picture(&self) -> PyResult<String> {
-        let drawn = match &self.scene {
-            Scene::Body(scene) => scene.picture(&self.run),
-            Scene::System(system) => system.picture(&self.run),
-        };
-        Ok(drawn.map_err(|error| Failure::Of("Error", error.to_string()))?)
+        Ok(self.scene.picture(&self.run).map_err(|error| Failure::Of("Error", error.to_string()))?)
     }
 
     /// The page that plays the run.
     fn page(&self) -> String {
-        match &self.scene {
-            Scene::Body(scene) => scene.page(&self.run),
-            Scene::System(system) => system.page(&self.run),
-        }
+        self.scene.page(&self.run)
     }
 }

@@ -34,14 +34,13 @@ impl Source {
     fn make(&self) -> Result<AnyStepper, Failure> {
         Ok(match self {
             Self::Declared(scene, method) => scene.stepper(*method)?,
-            Self::File(liestep_scene::Scene::Body(scene)) => scene.stepper()?.0,
-            Self::File(liestep_scene::Scene::System(system)) => system.stepper()?.0,
+            Self::File(scene) => scene.stepper()?.0,
         })
     }
 
     /// The system of several bodies, if it is one.
     fn system(&self) -> Option<&System> {
-        if let Self::File(liestep_scene::Scene::System(system)) = self { Some(system) } else { None }
+        if let Self::File(scene) = self { scene.system() } else { None }
     }
 
     /// The stepper of this thread.

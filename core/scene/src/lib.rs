@@ -1,8 +1,8 @@
 //! Scenes from files: `read → choose → run → picture, page, table`.
 //!
 //! A file names a body, the effects on it, the start of the motion, the step or an accuracy, and what to draw and to
-//! record. The files in `examples/scenes` are examples of the keys, and [`SceneFile`] lists them. Files of several
-//! bodies are [`System`]s, and [`Scene`] reads either. Numbers are in SI units, or texts with a unit: `"30 deg"`.
+//! record. A [`Scene`] is read from either of two kinds of files: [`SceneFile`] lists the keys of one body, or of a Lagrangian of
+//! the file's own, and [`System`] those of several bodies; the files in `examples/scenes` have examples. Numbers are in SI units, or texts with a unit: `"30 deg"`.
 //! Mistakes in a file are reported with line and column, as a [`Mistake`].
 //!
 //! ```
@@ -33,16 +33,18 @@ pub use file::column::Column;
 pub use file::draws::{SceneEnsemble, Spread};
 pub use file::histogram::EndHistogram;
 pub use file::kepler::orbit;
+pub use file::kinds::Scene;
 pub use file::mistake::{Kind, Mistake, visible};
 pub use file::quantity::ratio;
-pub use file::read::{Scene, parse, read};
+pub use file::read::{parse, read};
 pub use file::sample::{BodySample, Sample};
-pub use file::scene::{SceneFile, Sweep};
+pub use file::scene::SceneFile;
+pub use file::sweep::Sweep;
 pub use file::system::System;
 pub use import::{Import, import};
-pub use run::course::{BodyIntegrator, MemberEvent, MemberStart};
 pub use run::data::Whole;
-pub use run::make::{Happening, Run};
+pub use run::make::{EventFunction, Happening, Run, Watch};
+pub use run::moving::MemberStart;
 pub use show::derivation::{Form, declaration, derivation, derived, written};
 pub use show::fmu::{Fmi, Fmu, archive};
 pub use show::recording::Recording;

@@ -16,7 +16,7 @@ use crate::motion::plan::Cost;
 use crate::motion::propagator::{Layout, Propagator};
 use crate::motion::report::StepReport;
 use crate::numbers::Entries;
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 /// A [`Propagator`] of any scene, group and method, by [`Stepper::into_any`](crate::Stepper::into_any): for programs that choose them at run time.
 ///
@@ -130,6 +130,21 @@ impl AnyStepper {
         let mut momentum = vec![0.0; self.layout.components()];
         self.propagator.spatial_momentum(&motion.numbers, &mut momentum);
         momentum
+    }
+
+    /// The widest gap of a joint, as by [`Propagator::gap`].
+    #[must_use]
+    pub fn gap(&self, motion: &AnyMotion) -> f64 {
+        self.propagator.gap(&motion.numbers)
+    }
+
+    /// The forces and torques of the joints, as by [`Propagator::joint_forces`].
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`Integrator::step`].
+    pub fn joint_forces(&self, motion: &AnyMotion) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+        self.propagator.joint_forces(&motion.numbers)
     }
 
     /// Makes one step under a constant force in the body frame, as by [`Propagator::step_forced`].

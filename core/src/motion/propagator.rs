@@ -10,6 +10,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::layout::Factor;
 use crate::motion::plan::Cost;
 use crate::motion::report::StepReport;
+use nalgebra::Vector3;
 
 /// A scene, a method and a step `h` as one value, whose states are slices of numbers.
 ///
@@ -141,6 +142,21 @@ pub trait Propagator {
 
     /// The distance of the attitude from the group, `‖RᵀR − I‖` on SO(3).
     fn defect(&self, state: &[f64]) -> f64;
+
+    /// The widest gap of a joint, m, together with the cosines of its axes; zero without joints.
+    fn gap(&self, _state: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// The forces of the joints on their second bodies in the step from this state, N, and their torques about the origins of
+    /// these, N m, both in space; none without joints.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`](Self::step).
+    fn joint_forces(&self, _state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+        Ok(Vec::new())
+    }
 }
 
 /// Names, units and places of the numbers of a state: first the attitude, then the momentum, the advected parameters, the

@@ -12,7 +12,7 @@ fn drawn(ensemble: &str) -> String {
     format!("{TOP}\n[ensemble]\nmembers = 40\nseed = 7\n{ensemble}")
 }
 
-fn shards(folder: &Path) -> Vec<Shard> {
+pub(crate) fn shards(folder: &Path) -> Vec<Shard> {
     let files = Store::folder(folder).unwrap().files().unwrap();
     files.iter().map(|(_, path)| Store::read(path).unwrap()).collect()
 }

@@ -15,10 +15,8 @@ fn imported(test: &str, text: &str, floats: bool) -> Import {
 }
 
 fn run(text: &str) -> Run {
-    match Scene::parse("robot.toml", text).unwrap_or_else(|mistake| panic!("{mistake}\n{text}")) {
-        Scene::System(system) => system.run().unwrap_or_else(|mistake| panic!("{mistake}")),
-        Scene::Body(_) => panic!("one body"),
-    }
+    let scene = Scene::parse("robot.toml", text).unwrap_or_else(|mistake| panic!("{mistake}\n{text}"));
+    scene.run().unwrap_or_else(|mistake| panic!("{mistake}"))
 }
 
 fn ends(run: &Run) -> Vec<Vector3<f64>> {

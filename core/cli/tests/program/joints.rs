@@ -2,14 +2,11 @@
 
 use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 use liestep::mechanics::Effect as _;
-use liestep_scene::{Run, Scene, System};
+use liestep_scene::{Run, Scene};
 use nalgebra::Vector3;
 
-pub(crate) fn system(text: &str) -> System {
-    match Scene::parse("joints.toml", text).unwrap_or_else(|mistake| panic!("{mistake}")) {
-        Scene::System(system) => *system,
-        Scene::Body(_) => panic!("one body"),
-    }
+pub(crate) fn system(text: &str) -> Scene {
+    Scene::parse("joints.toml", text).unwrap_or_else(|mistake| panic!("{mistake}"))
 }
 
 pub(crate) fn run(text: &str) -> Run {

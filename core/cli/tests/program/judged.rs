@@ -2,20 +2,17 @@
 
 use std::fs;
 
-use liestep_scene::{Run, Sample, Scene, SceneFile, System};
+use liestep_scene::{Run, Sample, Scene};
 use nalgebra::Vector3;
 
 use crate::called::{called, folder, refuses};
 
-fn one(text: &str) -> SceneFile {
+fn one(text: &str) -> Scene {
     liestep_scene::parse("one.toml", text).unwrap()
 }
 
-fn several(text: &str) -> System {
-    match Scene::parse("several.toml", text).unwrap() {
-        Scene::System(system) => *system,
-        Scene::Body(_) => panic!("one body"),
-    }
+fn several(text: &str) -> Scene {
+    Scene::parse("several.toml", text).unwrap()
 }
 
 fn last(run: &Run) -> &Sample {

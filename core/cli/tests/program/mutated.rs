@@ -4,9 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use liestep::motion::Integrator as _;
-use nalgebra::Vector3;
 
-use liestep_scene::{Mistake, Scene, SceneEnsemble, Spread, System};
+use liestep_scene::{Mistake, Scene, SceneEnsemble, Spread};
 
 /// Marsaglia's xorshift.
 struct Random(u64);
@@ -142,18 +141,6 @@ fn make_members(drawn: &SceneEnsemble, text: &str, random: &mut Random) {
     }
 }
 
-/// Runs some steps of a system, and draws them.
-fn make_system(system: &System, text: &str, draws: bool) -> Result<(), Mistake> {
-    let run = system.first(30)?;
-    for sample in run.samples() {
-        let bodies = sample.bodies.iter().flat_map(|body| [body.position, body.velocity, body.moving]);
-        let is_finite = |vector: Vector3<f64>| vector.iter().all(|number| number.is_finite());
-        assert!(sample.energy.is_finite() && bodies.into_iter().all(is_finite), "{text}");
-    }
-    assert!(!draws || system.picture(&run).unwrap().contains("</svg>"));
-    Ok(())
-}
-
 /// Runs this number of files. Returns the numbers of files that ran, of members that were constructed, and of files
 /// with several bodies.
 fn survive(cases: usize, seed: u64) -> [usize; 3] {
@@ -161,13 +148,11 @@ fn survive(cases: usize, seed: u64) -> [usize; 3] {
     for case in 0..cases {
         let text = mutated(&seeds[random.below(seeds.len())], &mut random);
         let answer = Scene::parse("mutated.toml", &text).and_then(|scene| {
-            let scene = match scene {
-                Scene::Body(scene) => scene,
-                Scene::System(system) => {
-                    several += 1;
-                    return make_system(&system, &text, case % 20 == 0);
-                }
-            };
+            several += usize::from(scene.system().is_some());
+            // A search in a debug build takes minutes.
+            if scene.system().is_some() && scene.asks_for_accuracy() {
+                return Ok(());
+            }
             if let Some(ensemble) = scene.ensemble() {
                 make_members(ensemble, &text, &mut random);
                 drawn += 1;

@@ -18,7 +18,7 @@ fn its_scenes_run() {
     assert!(run.steps() >= 1000 && run.samples().len() as u64 == run.steps() + 1, "{}", run.steps());
     assert!((run.samples().last().unwrap().time - 20.0).abs() < 1e-9);
     let several = blocks.iter().find(|block| block.contains("[[body]]")).unwrap();
-    liestep_scene::System::parse("README.md", several).unwrap().run().unwrap();
+    liestep_scene::parse("README.md", several).unwrap().run().unwrap();
     let varied = liestep_scene::parse("README.md", &format!("{scene}{more}")).unwrap();
     assert_eq!(varied.sweep().unwrap().points.len(), 6);
     assert_eq!(varied.events().collect::<Vec<_>>(), ["fallen"]);

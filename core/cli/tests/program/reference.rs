@@ -1,7 +1,7 @@
 //! Euler–Poincaré equations on any matrix group by Runge–Kutta steps, which share no code with the library, and what
 //! tests of scenes on groups need.
 
-use liestep_scene::{Run, Sample, SceneFile};
+use liestep_scene::{Run, Sample, Scene};
 use nalgebra::{DMatrix, DVector};
 
 pub(crate) type Generators = Vec<DMatrix<f64>>;
@@ -72,7 +72,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-pub(crate) fn one(text: &str) -> SceneFile {
+pub(crate) fn one(text: &str) -> Scene {
     liestep_scene::parse("group.toml", text).unwrap_or_else(|mistake| panic!("{mistake}\n{text}"))
 }
 

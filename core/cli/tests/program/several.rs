@@ -6,7 +6,7 @@ use std::fs;
 use liestep::groups::R3;
 use liestep::methods::{Joint, Multibody};
 use liestep::prelude::*;
-use liestep_scene::{BodySample, Sample, Scene, System};
+use liestep_scene::{BodySample, Column, Sample, Scene};
 use nalgebra::{UnitQuaternion, Vector3, Vector6};
 
 use crate::called::{TOP, called, folder, printed, simulate, table};
@@ -39,11 +39,8 @@ struct HeavyBody {
     up: Vector3<f64>,
 }
 
-fn system(text: &str) -> System {
-    match Scene::parse("several.toml", text).unwrap() {
-        Scene::System(system) => *system,
-        Scene::Body(_) => panic!("one body"),
-    }
+fn system(text: &str) -> Scene {
+    Scene::parse("several.toml", text).unwrap()
 }
 
 /// The rows of a file have the bits of a program's states.
@@ -231,11 +228,7 @@ fn a_loop() {
 
 /// The message of a file that is refused.
 fn message(text: &str) -> String {
-    let mistake = match Scene::parse("held.toml", text) {
-        Ok(Scene::System(system)) => system.first(1000).map(|_| ()).unwrap_err(),
-        Ok(Scene::Body(_)) => panic!("one body"),
-        Err(mistake) => mistake,
-    };
+    let mistake = Scene::parse("held.toml", text).and_then(|scene| scene.first(1000)).map(|_| ()).unwrap_err();
     format!("{mistake}\n")
 }
 
@@ -305,11 +298,11 @@ fn more_than_forty_bodies() {
 #[test]
 fn columns_have_names_of_their_own() {
     let text = HELD.replace("\"lower\"", "\"momentum\"");
-    let columns = system(&text).columns();
+    let columns = Column::listed(system(&text).columns());
     assert!(columns.iter().any(|column| column.name == "momentum_x" && column.unit == "m"));
     assert!(columns.iter().any(|column| column.name == "gap" && column.unit == "m, 1"));
     let ball = text.replace("kind = \"pin\"", "kind = \"ball\"").replace("axes = [[1, 0, 0], [1, 0, 0]]", "");
-    assert!(system(&ball).columns().iter().any(|column| column.name == "gap" && column.unit == "m"));
+    assert!(Column::listed(system(&ball).columns()).iter().any(|column| column.name == "gap" && column.unit == "m"));
 }
 
 /// Files of several bodies have derivations, pictures and pages.

@@ -6,6 +6,7 @@ use liestep_scene::Run;
 use nalgebra::Vector3;
 
 use crate::called::{folder, printed};
+use crate::ensembles::shards;
 use crate::joints::{SWING, end, message, run, system};
 
 /// A composition of the step is of its order with joints, too: a double pendulum on pins and a rod on a ball joint at the end of
@@ -293,4 +294,123 @@ fn numbers_without_digits_have_their_place() {
         let message = system(&text.replace(from, to)).run().unwrap_err().to_string();
         assert!(message.contains(expected) && !message.contains("NaN"), "{to}: {message}");
     }
+}
+
+/// Two bodies of 1 kg and 0.5 kg with 0.1 kg m² about their centres, on arms of a metre, one below the other.
+fn double_pendulum(friction: &str, run: &str) -> String {
+    format!(
+        "title = \"double\"\ngravity = {{ g = 9.81, up = [0, 0, 1] }}\n[[body]]\nname = \"a\"\nm = 1\nmoments = [0.1, 0.1, 0.1]\n\
+         [[body]]\nname = \"b\"\nm = 0.5\nmoments = [0.1, 0.1, 0.1]\n[[joint]]\nkind = \"pin\"\nbodies = [\"space\", \"a\"]\n\
+         at = [[0, 0, 0], [0, 0, 1]]\naxes = [[0, 1, 0], [0, 1, 0]]\nangle = 1.2\nrate = 0.3\n{friction}[[joint]]\nkind = \"pin\"\n\
+         bodies = [\"a\", \"b\"]\nat = [[0, 0, 0], [0, 0, 1]]\naxes = [[0, 1, 0], [0, 1, 0]]\nangle = -0.5\nrate = 1\n{friction}\
+         [run]\nduration = 0.5\n{run}\n"
+    )
+}
+
+/// The places of both centres after half a second, x and z, by Runge and Kutta of the textbook's equations for the angles.
+fn double_pendulum_by_hand(c: f64) -> [f64; 4] {
+    let (m, n, J, g) = (1.0, 0.5, 0.1, 9.81);
+    let rates = |[one, two, u, v]: [f64; 4]| {
+        let (sine, cosine) = f64::sin_cos(one - two);
+        let first = -n * sine * v * v - (m + n) * g * one.sin() - c * u + c * (v - u);
+        let second = n * sine * u * u - n * g * two.sin() - c * (v - u);
+        let (of_one, of_two, both) = (m + n + J, n + J, n * cosine);
+        let determinant = of_one * of_two - both * both;
+        [u, v, (of_two * first - both * second) / determinant, (of_one * second - both * first) / determinant]
+    };
+    let along = |state: [f64; 4], rate: [f64; 4], h: f64| [0, 1, 2, 3].map(|k| state[k] + h * rate[k]);
+    let (mut state, h) = ([1.2, 0.7, 0.3, 1.3], 1e-4);
+    for _ in 0..5000 {
+        let a = rates(state);
+        let b = rates(along(state, a, 0.5 * h));
+        let c = rates(along(state, b, 0.5 * h));
+        let d = rates(along(state, c, h));
+        state = [0, 1, 2, 3].map(|k| state[k] + h / 6.0 * (a[k] + 2.0 * b[k] + 2.0 * c[k] + d[k]));
+    }
+    let [one, two, ..] = state;
+    [-one.sin(), -one.cos(), -one.sin() - two.sin(), -one.cos() - two.cos()]
+}
+
+/// An accuracy of several bodies is kept: their ends are those of the textbook's equations, with and without friction. Without a
+/// step it is 1e-6.
+#[test]
+fn an_accuracy_of_several_bodies() {
+    let off = |run: &Run, c: f64| {
+        let found: Vec<f64> = (0..2).flat_map(|body| [end(run, body).x, end(run, body).z]).collect();
+        let pairs = found.iter().zip(double_pendulum_by_hand(c));
+        pairs.map(|(found, right)| (found - right).powi(2)).sum::<f64>().sqrt()
+    };
+    for tolerance in [1e-4, 1e-8] {
+        let run = run(&double_pendulum("", &format!("accuracy = {tolerance:e}")));
+        let choice = run.choice().unwrap();
+        println!("{choice}off by {:e}", off(&run, 0.0));
+        // The error is relative to all attitudes and places, whose norm is about 4.
+        assert!(choice.error <= tolerance && off(&run, 0.0) < 5.0 * tolerance, "{choice}{:e}", off(&run, 0.0));
+        assert!(choice.offers().len() == 5 && choice.steps == run.steps());
+        assert!(tolerance > 1e-6 || choice.chosen().order > 2, "{choice}");
+    }
+    let text = double_pendulum("", "");
+    let (scene, open) = (system(&text), run(&text));
+    let choice = open.choice().unwrap();
+    assert!((choice.accuracy.tolerance, open.steps() >= 1000) == (1e-6, true) && off(&open, 0.0) < 5e-6, "{choice}");
+    assert!(scene.asks_for_accuracy() && scene.stepper().is_err());
+    let told = scene.summary(&open) + &scene.end_error(&open);
+    assert!(told.contains("the end is off by at most about") && !told.contains("as steps of"), "{told}");
+    // Friction has no step back: the own step alone is tried.
+    let damped = run(&double_pendulum("damping = 0.4\n", "accuracy = 1e-4"));
+    let choice = damped.choice().unwrap();
+    println!("{choice}off by {:e}", off(&damped, 0.4));
+    assert!(choice.offers().len() == 1 && off(&damped, 0.4) < 5e-4, "{choice}{:e}", off(&damped, 0.4));
+}
+
+/// The members of an ensemble of several bodies are the scenes with their values, to the bit, with events and columns of joints.
+#[test]
+fn an_ensemble_of_several_bodies() {
+    let folder = folder("ensemble-of-several");
+    let text = SWING.replacen("duration = 1", "duration = 0.1", 1).replacen(
+        "[run]",
+        "[[event]]\nname = \"low\"\ncolumn = \"left_x\"\nvalue = -0.05\n[output]\n\
+         columns = [\"position\", \"energy\", \"angle\", \"force\"]\n[run]",
+        1,
+    );
+    let ensemble = "[ensemble]\nmembers = 6\nseed = 3\ndraw.body.seat.m = { from = 1, to = 3 }\n\
+                    draw.gravity.g = { mean = 9, deviation = 0.1 }\nhistogram.left_x = { from = -1, to = 1, count = 2 }\n";
+    std::fs::write(folder.join("swing.toml"), format!("{text}{ensemble}")).unwrap();
+    let told = printed(&folder, &["ensemble", "swing.toml", "--out", "."]);
+    assert!(
+        told.contains("6 finished, 0 broke down, 0 can't exist") && told.contains("low: in 6 of 6 members"),
+        "{told}"
+    );
+    let mut members = 0;
+    for shard in shards(&folder.join("swing.ensemble")) {
+        for row in 0..shard.rows.status.len() {
+            let kept: Vec<f64> = shard.rows.columns.iter().map(|column| column[row]).collect();
+            let [columns @ .., m, g, time] = kept.as_slice() else { panic!("{kept:?}") };
+            assert!((1.0..3.0).contains(m) && (8.5..9.5).contains(g));
+            let own = text.replacen("name = \"seat\"\nm = 1", &format!("name = \"seat\"\nm = {m:?}"), 1).replacen(
+                "g = 9.81",
+                &format!("g = {g:?}"),
+                1,
+            );
+            let run = run(&own);
+            let last = run.samples().last().unwrap();
+            let numbers = system(&own).end(&run);
+            assert_eq!((time, &numbers[1..=columns.len()]), (&last.time, columns));
+            members += 1;
+        }
+    }
+    assert_eq!(members, 6);
+    let passages =
+        shards(&folder.join("swing.ensemble")).iter().map(|shard| shard.rows.crossings[0].row.len()).sum::<usize>();
+    assert_eq!(passages, 6);
+    let wrong = |draw: &str| message(&format!("{text}[ensemble]\nmembers = 2\n{draw}\n"));
+    let limited = text.replacen("rate = 2\n", "rate = 2\nlimits = { from = -1, to = 1 }\n", 1);
+    let of_limits =
+        message(&format!("{limited}[ensemble]\nmembers = 2\ndraw.joint.joint-1.limits.to = {{ from = 1, to = 2 }}\n"));
+    assert!(
+        of_limits.contains("an event knows the orbit, the angles, the wheels and the joints of the file"),
+        "{of_limits}"
+    );
+    assert!(wrong("draw.joint.elbow.rate = { from = 1, to = 2 }").contains("no `joint` is called `elbow`"));
+    assert!(wrong("draw.start.velocity = [1, { from = 1, to = 2 }, 0]").contains("the file has no `start`"));
 }

@@ -196,7 +196,8 @@ impl Column {
     }
 
     /// The columns of a table, by name and unit.
-    pub(crate) fn listed(columns: &[Self]) -> Vec<recording::Column> {
+    #[must_use]
+    pub fn listed(columns: &[Self]) -> Vec<recording::Column> {
         let named = |(name, unit): &(String, &str)| recording::Column { name: name.clone(), unit: (*unit).to_owned() };
         columns.iter().flat_map(|column| column.names.iter().map(named)).collect()
     }

@@ -14,6 +14,7 @@ use toml::de::{DeValue, Deserializer};
 use crate::file::beginning::Beginning;
 use crate::file::body::Kinetic;
 use crate::file::column::Column;
+use crate::file::common::Parts as _;
 use crate::file::control::{self, Motor, settle};
 use crate::file::effects::Table as _;
 use crate::file::group::Group;
@@ -24,8 +25,8 @@ use crate::file::over_time::{self, NO_ORBIT, OverTime};
 use crate::file::picture::{Curve, SpherePicture};
 use crate::file::pointing::{Pointing, View};
 use crate::file::scene::{Origin, Places, SceneFile};
-use crate::file::schedule::{Pace, equal_steps, fraction};
-use crate::file::tables::{Document, span};
+use crate::file::schedule::{Pace, equal_steps};
+use crate::file::tables::{Document, has, span};
 use crate::file::text::check_name;
 use crate::file::words::in_files;
 
@@ -48,6 +49,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     if file.body.is_none() && lagrangian.is_empty() && hamiltonian.is_empty() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
+    file.run.count(document).map_err(located)?;
     (file.lagrangian, file.hamiltonian, file.force, file.nonholonomic) = (lagrangian, hamiltonian, force, nonholonomic);
     file.over_time = over_time.into();
     beside(document, &file).map_or(Ok(()), Err).map_err(located)?;
@@ -201,10 +203,6 @@ fn named_method(document: &Document<'_>) -> Option<String> {
     name.parse::<Scheme>().is_err().then(|| name.to_owned())
 }
 
-fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
-    document.get_ref().get(table).and_then(|table| table.get_ref().get(key)).is_some()
-}
-
 /// Conflicts between keys that are valid by themselves.
 fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let of = [of_pace, of_orbit, of_devices, of_density, of_method, of_picture];
@@ -214,25 +212,17 @@ fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
 /// Conflicts with a step or an accuracy.
 fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
-    if has(document, "run", "step") && has(document, "run", "accuracy") {
-        return wrong(&["run", "accuracy"], "a run has either a `step` or an `accuracy`".to_owned());
+    if file.run.nearest {
+        return wrong(&["run", "nearest"], "`nearest` closes joints, and one body has none: leave it out".to_owned());
     }
-    if let Pace::Step { step, .. } = file.run.pace
-        && !file.has_steps_of_its_own()
-        && let Some(message) = fraction(step, file.run.duration)
-    {
-        return wrong(&["run", "duration"], message);
+    if let Some(odds) = file.run.at_odds(document, file.has_steps_of_its_own()) {
+        return Some(odds);
     }
     if let Pace::Accuracy(_) = file.run.pace {
         if let Some(force) = file.first_force() {
             let message =
                 format!("an accuracy can be asked for in conservative scenes; {force} does work, so give a `step`");
             return wrong(&["run", "accuracy"], message);
-        }
-        if has(document, "run", "method") {
-            let message =
-                "an `accuracy`, which a run without a `step` has, chooses the method; give a `step` to choose it";
-            return wrong(&["run", "method"], message.to_owned());
         }
         if file.kinetic() != Kinetic::Rigid {
             let message = "an `accuracy`, which a run without a `step` has, chooses the method for the kinetic term \
@@ -406,7 +396,7 @@ fn of_composition(scheme: &CompositionScheme, file: &SceneFile) -> Option<String
         let message = "only steps that undo those of −h can be composed, and those of this Lagrangian don't";
         return Some(message.to_owned());
     }
-    let (name, base, order) = (scheme.name(), scheme.base(), file.order());
+    let (name, base, order) = (scheme.name(), scheme.base(), file.own_order());
     (base != order)
         .then(|| format!("{name} composes a step of order {base}, and that of this scene is of order {order}"))
 }

@@ -33,7 +33,8 @@ pub struct SceneEnsemble {
     pub text: String,
     pub(crate) axes: Vec<Axis>,
     pub(crate) path: PathBuf,
-    /// The tables with drawn values, to be put into the member `like`. Without such a member, all tables of the file.
+    /// The tables with drawn values, to be put into the member `like`. Without such a member, as for several bodies, all tables
+    /// of the file.
     pub(crate) tables: DeTable<'static>,
     pub(crate) like: Option<Box<SceneFile>>,
 }
@@ -97,11 +98,8 @@ pub(crate) const LISTED: [&str; 3] = ["control", "wheel", "pointing"];
 /// The tables whose values can be drawn.
 fn drawable() -> impl Iterator<Item = &'static str> {
     let effects = EFFECTS.iter().map(|effect| effect.key);
-    ["body", "orbit", "lagrangian", "hamiltonian", "force", "nonholonomic"]
-        .into_iter()
-        .chain(effects)
-        .chain(["start"])
-        .chain(LISTED)
+    let first = ["body", "orbit", "lagrangian", "hamiltonian", "force", "nonholonomic"].into_iter().chain(effects);
+    first.chain(["start"]).chain(LISTED).chain(["joint"])
 }
 
 impl SceneEnsemble {
@@ -116,13 +114,15 @@ impl SceneEnsemble {
 }
 
 impl SceneEnsemble {
-    /// Whether a number is drawn by which columns are read from a state: of the orbit, of the angle of an axis, or of the axis
-    /// or the inertia of a wheel.
+    /// Whether a number is drawn by which columns are read from a state, or events are found: of the orbit, of the angle of an
+    /// axis, of the axis or the inertia of a wheel, or of the zero or the limits of a joint.
     #[must_use]
     pub fn draws_what_columns_read(&self) -> bool {
         self.axes.iter().any(|Axis { keys, .. }| {
             let of = |at: usize| keys.get(at).map_or("", |key| key.get_ref().as_str());
-            ["orbit", "pointing"].contains(&of(0)) || of(0) == "wheel" && ["axis", "inertia"].contains(&of(2))
+            ["orbit", "pointing"].contains(&of(0))
+                || of(0) == "wheel" && ["axis", "inertia"].contains(&of(2))
+                || of(0) == "joint" && ["zero", "limits"].contains(&of(2))
         })
     }
 }

@@ -8,9 +8,9 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::file::column::Column;
 use crate::file::control::{Motor, Wheel};
-use crate::file::document::scene;
 use crate::file::draws::{Axis, Component, DRAW, LISTED, SceneEnsemble, Spread, parts};
 use crate::file::event::{Event, Quantity};
+use crate::file::kinds::{Content, Scene};
 use crate::file::mistake::{Mistake, SpanMessage, place_of};
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Document, set, span};
@@ -22,14 +22,15 @@ impl SceneEnsemble {
     /// # Errors
     ///
     /// A [`Mistake`] where the drawn numbers make no valid scene, such as a negative mass.
-    pub fn member(&self, draw: &mut dyn FnMut(&str, Spread) -> f64) -> Result<SceneFile, Mistake> {
+    pub fn member(&self, draw: &mut dyn FnMut(&str, Spread) -> f64) -> Result<Scene, Mistake> {
         let numbers: Vec<f64> = self.draws().map(|(name, spread)| draw(name, spread)).collect();
-        self.numbered(&numbers).map_or_else(|| self.written(&numbers), Ok)
+        let content = self.numbered(&numbers).map_or_else(|| self.written(&numbers), Ok);
+        content.map(Scene::from)
     }
 
     /// The scene of another member with these numbers in it; none where a value can only be read from a text.
-    fn numbered(&self, numbers: &[f64]) -> Option<SceneFile> {
-        let (mut numbers, mut scene) = (numbers.iter(), SceneFile::clone(self.like.as_ref()?));
+    fn numbered(&self, numbers: &[f64]) -> Option<Content> {
+        let (mut numbers, mut scene) = (numbers.iter(), self.like.clone()?);
         for Axis { keys, components, .. } in &self.axes {
             let [table, key] = keys.as_slice() else { return None };
             for (component, part) in components.iter().enumerate() {
@@ -39,11 +40,11 @@ impl SceneEnsemble {
                 }
             }
         }
-        Some(scene)
+        Some(Content::Body(scene))
     }
 
     /// The scene read from tables in which these numbers are written.
-    fn written(&self, numbers: &[f64]) -> Result<SceneFile, Mistake> {
+    fn written(&self, numbers: &[f64]) -> Result<Content, Mistake> {
         let located = |(span, message): SpanMessage| Mistake::at(&self.path, place_of(&self.text, &span), message);
         let mut numbers = numbers.iter().copied();
         let mut text = |part: &Component| part.text(&self.text, &mut numbers);
@@ -63,13 +64,13 @@ impl SceneEnsemble {
             set(&mut varied, keys, value).map_err(located)?;
         }
         let Some(own) = &self.like else {
-            return scene(&self.path, &self.text, &Spanned::new(0..self.text.len(), varied));
+            return Content::read(&self.path, &self.text, &Spanned::new(0..self.text.len(), varied));
         };
-        let mut own = SceneFile::clone(own);
+        let mut own = own.clone();
         for (name, table) in varied {
             own.set(name.get_ref(), &table).map_err(located)?;
         }
-        Ok(own)
+        Ok(Content::Body(own))
     }
 }
 
@@ -82,60 +83,67 @@ fn signals(file: &SceneFile) -> impl Iterator<Item = String> {
 }
 
 /// Conflicts with columns: those that a member has none of, and those that its events can't know; `at` finds the place of keys.
-fn of_columns(ensemble: &SceneEnsemble, file: &SceneFile, at: &dyn Fn(&[&str]) -> Range<usize>) -> Option<SpanMessage> {
+fn of_columns(ensemble: &SceneEnsemble, scene: &Scene, at: &dyn Fn(&[&str]) -> Range<usize>) -> Option<SpanMessage> {
     let wrong = |keys: &[&str], message: String| Some((at(keys), message));
-    if let Some(column) = file.columns().iter().find(|column| column.is_since_the_start()) {
+    if let Some(column) = scene.columns().iter().find(|column| column.is_since_the_start()) {
         let names = column.names().collect::<Vec<_>>().join(", ");
         let why = "is measured from the start of a run; leave it out";
         return wrong(&["output", "columns"], format!("an ensemble keeps states, and `{names}` {why}"));
     }
-    let names: Vec<&str> = file.columns().iter().flat_map(Column::names).collect();
+    let names: Vec<&str> = scene.columns().iter().flat_map(Column::names).collect();
     if let Some(one) = ensemble.histograms.iter().find(|one| !names.contains(&one.column.as_str())) {
         let message = format!("the `columns` of the file have no `{}`, but {}", one.column, names.join(", "));
         return Some((one.span.clone(), message));
     }
+    // Numbers from this place on are read by what a member may draw.
+    let (events, changes, first, is_limited) = match &scene.content {
+        Content::Body(file) => (&file.event, file.changing().is_some(), file.group.energy() + 2, false),
+        Content::System(system) => (&system.event, false, system.joint_columns(), system.limited().next().is_some()),
+    };
     let names_energy = |event: &Event| matches!(event.quantity, Quantity::Energy(_));
-    let keeps_energy = file.columns().iter().any(|column| column.key() == "energy");
-    if file.changing().is_some() && (file.event.iter().any(names_energy) || keeps_energy && !file.event.is_empty()) {
+    let keeps_energy = scene.columns().iter().any(|column| column.key() == "energy");
+    if changes && (events.iter().any(names_energy) || keeps_energy && !events.is_empty()) {
         let message = "where something changes with time the energy of a member isn't known between its steps, where events are: leave `energy` out of `columns` and events, or `ensemble` out of the file";
         return wrong(&["output", "columns"], message.to_owned());
     }
-    let is_read = |column: &Column| ["pointing", "roll-pitch-yaw", "wheel-speeds"].contains(&column.key());
-    let angles = file.group.energy() + 2;
-    let is_seen = |event: &Event| matches!(event.quantity, Quantity::Column(place, _) if place >= angles);
+    let read = ["pointing", "roll-pitch-yaw", "wheel-speeds", "angle", "shift", "torque"];
+    let is_read = |column: &Column| read.contains(&column.key());
+    let is_seen = |event: &Event| matches!(event.quantity, Quantity::Column(place, _) | Quantity::Angle(place, _) if place >= first);
+    let has_events = scene.events().next().is_some();
     if ensemble.draws_what_columns_read()
-        && (file.event.iter().any(is_seen) || !file.event.is_empty() && file.columns().iter().any(is_read))
+        && (is_limited || events.iter().any(is_seen) || has_events && scene.columns().iter().any(is_read))
     {
-        let message = "an event knows the orbit, the angles and the wheels of the file, not those that a member draws: leave \
-                       the columns of angles and wheels out, or the event, or draw something else";
+        let message = "an event knows the orbit, the angles, the wheels and the joints of the file, not those that a member draws: \
+                       leave the columns of angles, wheels and joints out, or the event, or draw something else";
         return wrong(&["event"], message.to_owned());
     }
     None
 }
 
-/// The ensemble of a table; `file` is the scene without draws.
+/// The ensemble of a table; `scene` is that without draws.
 pub(crate) fn read(
     (path, text): (&Path, &str),
     document: &Document<'_>,
     table: &Spanned<DeValue<'_>>,
-    file: &SceneFile,
+    scene: &Scene,
 ) -> Result<SceneEnsemble, Mistake> {
     let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut ensemble = parts((path, text), table).map_err(located)?;
-    ensemble.text.extend(signals(file));
+    let file = if let Content::Body(file) = &scene.content { Some(&**file) } else { None };
+    ensemble.text.extend(file.into_iter().flat_map(signals));
     let wrong = |keys: &[&str], message: String| Err(located((span(document, keys), message)));
-    if file.asks_for_accuracy() {
+    if scene.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
     }
-    let has_a_pace = file.paced().is_some();
-    if has_a_pace || file.run.density.is_some() {
+    let has_a_pace = file.is_some_and(|file| file.paced().is_some());
+    if has_a_pace || scene.schedule().density.is_some() {
         let keys = if has_a_pace { ["lagrangian", "pace"] } else { ["run", "density"] };
         let why = "members make the same number of steps, and those of a";
         return wrong(&keys, format!("{why} `{}` end at different times: leave it out", keys[1]));
     }
-    of_columns(&ensemble, file, &|keys| span(document, keys)).map_or(Ok(()), Err).map_err(located)?;
+    of_columns(&ensemble, scene, &|keys| span(document, keys)).map_or(Ok(()), Err).map_err(located)?;
     let written = table.get_ref().as_table().and_then(|table| table.get("every"));
-    if let (Some(every), Some(steps), Some(value)) = (ensemble.every, file.steps(), written)
+    if let (Some(every), Some(steps), Some(value)) = (ensemble.every, scene.steps(), written)
         && every > steps
     {
         let message =
@@ -166,15 +174,16 @@ pub(crate) fn read(
     let axes = &ensemble.axes;
     let is_drawn = |name: &str| axes.iter().any(|axis| axis.keys.first().is_some_and(|key| key.get_ref() == name));
     // A drawn Lagrangian, force, constraint or orbit affects other tables, too: all of them are read anew.
-    let all = ["lagrangian", "hamiltonian", "force", "nonholonomic", "orbit"]
-        .iter()
-        .chain(&LISTED)
-        .any(|name| is_drawn(name))
-        || file.over_time.iter().any(|one| is_drawn(&one.table))
-        || file.run.steps_per_orbit.is_some();
+    let all = |file: &SceneFile| {
+        ["lagrangian", "hamiltonian", "force", "nonholonomic", "orbit"].iter().chain(&LISTED).any(|name| is_drawn(name))
+            || file.over_time.iter().any(|one| is_drawn(&one.table))
+            || file.run.steps_per_orbit.is_some()
+    };
+    let like = file.filter(|file| !all(file));
+    let all = like.is_none();
     let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
     ensemble.tables = tables.into_inner().into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
-    ensemble.like = (!all).then(|| Box::new(SceneFile { sweep: None, ..file.clone() }));
+    ensemble.like = like.map(|file| Box::new(file.clone()));
     // Wrong units and keys are found by reading two members.
     for end in [true, false] {
         let value = |(_, spread)| match spread {
@@ -182,7 +191,9 @@ pub(crate) fn read(
             Spread::Uniform { to: value, .. } | Spread::Normal { mean: value, .. } => value,
         };
         let one = ensemble.written(&ensemble.draws().map(value).collect::<Vec<_>>())?;
-        ensemble.like = ensemble.like.is_some().then(|| Box::new(one));
+        if let (Some(like), Content::Body(one)) = (&mut ensemble.like, one) {
+            *like = one;
+        }
     }
     Ok(ensemble)
 }

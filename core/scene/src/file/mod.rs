@@ -3,6 +3,7 @@
 pub(crate) mod beginning;
 pub(crate) mod body;
 pub(crate) mod column;
+pub(crate) mod common;
 pub(crate) mod control;
 pub(crate) mod document;
 pub(crate) mod draws;
@@ -15,6 +16,7 @@ pub(crate) mod histogram;
 pub(crate) mod joint;
 pub(crate) mod kepler;
 pub(crate) mod key;
+pub(crate) mod kinds;
 pub(crate) mod lagrangian;
 pub(crate) mod law;
 pub(crate) mod method;

@@ -2,24 +2,13 @@
 
 use std::path::Path;
 
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 
-use crate::file::document::scene;
-use crate::file::mistake::{Mistake, SpanMessage, place_of};
-use crate::file::scene::SceneFile;
-use crate::file::system::System;
-use crate::file::tables::{Document, span};
+use crate::file::kinds::{Content, Scene};
+use crate::file::mistake::{Lines, Mistake, SpanMessage};
+use crate::file::tables::Document;
 use crate::file::text::text;
 use crate::file::{ensemble, sweep};
-
-/// The scene of a file: one body, or several.
-#[derive(Clone)]
-pub enum Scene {
-    /// One body, from a table `[body]`.
-    Body(Box<SceneFile>),
-    /// Several bodies, from tables `[[body]]`.
-    System(Box<System>),
-}
 
 impl Scene {
     /// Reads a file.
@@ -38,52 +27,36 @@ impl Scene {
     ///
     /// The first [`Mistake`] in it.
     pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self, Mistake> {
-        let path = path.as_ref();
-        let document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
-        if has_several(document.get_ref()) {
-            System::parse(path, text).map(|system| Self::System(Box::new(system)))
-        } else {
-            parse(path, text).map(|scene| Self::Body(Box::new(scene)))
+        let (path, lines) = (path.as_ref(), Lines::of(text));
+        let located = |(span, message): SpanMessage| Mistake::at(path, lines.place(span.start), message);
+        let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
+        let [sweep, drawn] = ["sweep", "ensemble"].map(|table| document.get_mut().remove(table));
+        let read = |document: &Document<'_>| Content::read(path, text, document).map(Self::from);
+        let mut scene = read(&document)?;
+        if let Some(table) = sweep {
+            scene.sweep = Some(Box::new(sweep::read(&document, &table, &located, &read)?));
         }
+        if let Some(table) = drawn {
+            scene.ensemble = Some(Box::new(ensemble::read((path, text), &document, &table, &scene)?));
+        }
+        Ok(scene)
     }
 }
 
-/// Reads the file of a scene with one body; [`Scene::read`] also reads files of several bodies.
+/// Reads a file, as [`Scene::read`].
 ///
 /// # Errors
 ///
 /// The first [`Mistake`] in it.
-pub fn read(path: impl AsRef<Path>) -> Result<SceneFile, Mistake> {
-    let path = path.as_ref();
-    parse(path, &text(path)?)
+pub fn read(path: impl AsRef<Path>) -> Result<Scene, Mistake> {
+    Scene::read(path)
 }
 
-/// Parses the scene of a text; `path` appears in messages.
+/// Parses the scene of a text, as [`Scene::parse`].
 ///
 /// # Errors
 ///
 /// The first [`Mistake`] in it.
-pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<SceneFile, Mistake> {
-    let path = path.as_ref();
-    let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
-    let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
-    if has_several(document.get_ref()) {
-        let message = "the file has several bodies, and ensembles are of one body: `liestep run` runs it".to_owned();
-        return Err(located((span(&document, &["body"]), message)));
-    }
-    let [sweep, drawn] = ["sweep", "ensemble"].map(|table| document.get_mut().remove(table));
-    let read = |document: &Document<'_>| scene(path, text, document);
-    let mut file = read(&document)?;
-    if let Some(table) = sweep {
-        file.sweep = Some(sweep::read(&document, &table, &located, &read)?);
-    }
-    if let Some(table) = drawn {
-        file.ensemble = Some(ensemble::read((path, text), &document, &table, &file)?);
-    }
-    Ok(file)
-}
-
-/// Whether the document lists several bodies.
-fn has_several(document: &DeTable<'_>) -> bool {
-    document.get("body").is_some_and(|body| matches!(body.get_ref(), DeValue::Array(_)))
+pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Scene, Mistake> {
+    Scene::parse(path, text)
 }

@@ -1,9 +1,8 @@
 //! The file of a scene with one body.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use liestep::recording;
 use liestep_late::Declaration;
 use nalgebra::Matrix3;
 use serde::Deserialize;
@@ -13,8 +12,8 @@ use toml::de::{DeValue, Error, ValueDeserializer};
 use crate::file::beginning::Beginning;
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
+use crate::file::common::Parts;
 use crate::file::control::{self, Control, Wheel, entries};
-use crate::file::draws::SceneEnsemble;
 use crate::file::effects::{self, EFFECTS, EffectEntry, Table, effects};
 use crate::file::event::Event;
 use crate::file::group::Group;
@@ -26,7 +25,7 @@ use crate::file::over_time::OverTime;
 use crate::file::parameter::in_value;
 use crate::file::picture::SpherePicture;
 use crate::file::pointing::{Pointing, View};
-use crate::file::quantity::{Rate, in_si, round, short};
+use crate::file::quantity::{Rate, in_si, round};
 use crate::file::schedule::{Pace, Schedule};
 use crate::file::text::title;
 
@@ -126,12 +125,6 @@ effects! { scene_file
     pub(crate) over_time: Arc<[OverTime]>,
     #[serde(skip)]
     pub(crate) columns: Vec<Column>,
-    /// The sweep of the file; none in the scenes that a sweep generates.
-    #[serde(skip)]
-    pub(crate) sweep: Option<Sweep>,
-    /// The ensemble of the file; none in the scenes that an ensemble draws.
-    #[serde(skip)]
-    pub(crate) ensemble: Option<SceneEnsemble>,
     #[serde(skip)]
     pub(crate) origin: Origin,
 }
@@ -156,64 +149,9 @@ pub(crate) struct Places {
 }
 
 impl SceneFile {
-    /// The title of the scene.
-    #[must_use]
-    pub fn title(&self) -> &str {
-        &self.title
-    }
-
-    /// The sweep over scenes, if the file has a table `sweep`.
-    #[must_use]
-    pub fn sweep(&self) -> Option<&Sweep> {
-        self.sweep.as_ref()
-    }
-
-    /// The names of the events to be detected.
-    pub fn events(&self) -> impl Iterator<Item = &str> {
-        self.event.iter().map(|event| event.name.as_str())
-    }
-
-    /// The columns that follow the time in a table of the run.
-    #[must_use]
-    pub fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
-    /// The columns that follow the time in a table, one for each number.
-    pub(crate) fn listed(&self) -> Vec<recording::Column> {
-        Column::listed(&self.columns)
-    }
-
-    /// The ensemble of scenes, if the file has a table `ensemble`.
-    #[must_use]
-    pub fn ensemble(&self) -> Option<&SceneEnsemble> {
-        self.ensemble.as_ref()
-    }
-
-    /// Whether the step is chosen by trial runs, for an accuracy.
-    #[must_use]
-    pub fn asks_for_accuracy(&self) -> bool {
-        matches!(self.run.pace, Pace::Accuracy(_))
-    }
-
-    /// Whether the steps have different lengths.
-    pub(crate) fn has_steps_of_its_own(&self) -> bool {
-        let is_varied = self.run.steps_per_orbit.is_some() || self.run.density.is_some();
-        is_varied || self.paced().is_some()
-    }
-
     /// The Lagrangian with a pace.
     pub(crate) fn paced(&self) -> Option<&DeclaredTerm> {
         self.lagrangian.iter().find(|own| own.has_a_pace)
-    }
-
-    /// The number of steps; none where they are chosen for an accuracy.
-    #[must_use]
-    pub fn steps(&self) -> Option<u64> {
-        match self.run.pace {
-            Pace::Step { steps, .. } => Some(steps.into()),
-            Pace::Accuracy(_) => None,
-        }
     }
 
     /// The angle by which the body turns in an equal step at the start, approximately, rad.
@@ -224,39 +162,6 @@ impl SceneFile {
             }
             _ => None,
         }
-    }
-
-    /// A description of the terms and the steps, in words.
-    #[must_use]
-    pub fn about(&self) -> String {
-        let pace = match self.run.pace {
-            Pace::Step { step, .. } if self.has_steps_of_its_own() => {
-                format!("{} s by steps of {} s on the average", short(self.run.duration), short(step))
-            }
-            Pace::Step { step, steps } => format!("{steps} steps of {} s", short(step)),
-            Pace::Accuracy(tolerance) => format!("{} s to {tolerance:e}", short(self.run.duration)),
-        };
-        let sweep = self.sweep.as_ref().map(|sweep| format!(", a sweep of {}", sweep.points.len()));
-        let ensemble = self.ensemble.as_ref().map(|ensemble| format!(", an ensemble of {}", ensemble.members));
-        let turn = self.turn_of_a_step().map(|turn| format!(", hΩ = {} rad", round(turn))).unwrap_or_default();
-        format!("{}, {pace}{turn}{}{}", self.sum(), sweep.unwrap_or_default(), ensemble.unwrap_or_default())
-    }
-
-    /// A description of the terms, in words.
-    pub(crate) fn sum(&self) -> String {
-        let body = self.body.iter().map(|_| "body".to_owned());
-        let own = self.lagrangian.iter().map(|_| "a Lagrangian of its own".to_owned());
-        let hamiltonian = self.hamiltonian.iter().map(|_| "a Hamiltonian of its own".to_owned());
-        let effects = self.effects().map(|(effect, _)| effect.name(" "));
-        let force = self.force.iter().map(|_| "a force of its own".to_owned());
-        let control = self.control.iter().map(|_| "a law".to_owned());
-        let wheels = (!self.wheel.is_empty()).then(|| match self.wheel.len() {
-            1 => "a wheel".to_owned(),
-            count => format!("{count} wheels"),
-        });
-        let constraint = self.nonholonomic.iter().map(|_| "a constraint of its own".to_owned());
-        let own = body.chain(own).chain(hamiltonian).chain(effects).chain(force).chain(constraint);
-        own.chain(control).chain(wheels).collect::<Vec<_>>().join(" + ")
     }
 
     /// The terms of the file's own.
@@ -340,18 +245,69 @@ impl SceneFile {
     }
 
     /// Order of the scene's own step; effects are kicks of second order.
-    pub(crate) fn order(&self) -> u32 {
+    pub(crate) fn own_order(&self) -> u32 {
         let is_free = self.effects().next().is_none() && self.own().next().is_none() && !self.has_devices();
         if is_free { self.kinetic().order() } else { 2 }
     }
 }
 
-/// The scenes of a sweep: one for each combination of its values. The last key varies fastest.
-#[derive(Clone)]
-#[non_exhaustive]
-pub struct Sweep<S = SceneFile> {
-    /// The varied keys, such as `gravity.m`, in the order of the file.
-    pub names: Vec<String>,
-    /// Each scene, with the texts of its varied values.
-    pub points: Vec<(Vec<String>, S)>,
+impl Parts for SceneFile {
+    fn title(&self) -> &str {
+        &self.title
+    }
+
+    fn schedule(&self) -> &Schedule {
+        &self.run
+    }
+
+    fn schedule_mut(&mut self) -> &mut Schedule {
+        &mut self.run
+    }
+
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn output(&self) -> &Output {
+        &self.output
+    }
+
+    fn path(&self) -> &Path {
+        &self.origin.path
+    }
+
+    fn event_names(&self) -> Vec<&str> {
+        self.event.iter().map(|event| event.name.as_str()).collect()
+    }
+
+    fn sum(&self) -> String {
+        let body = self.body.iter().map(|_| "body".to_owned());
+        let own = self.lagrangian.iter().map(|_| "a Lagrangian of its own".to_owned());
+        let hamiltonian = self.hamiltonian.iter().map(|_| "a Hamiltonian of its own".to_owned());
+        let effects = self.effects().map(|(effect, _)| effect.name(" "));
+        let force = self.force.iter().map(|_| "a force of its own".to_owned());
+        let control = self.control.iter().map(|_| "a law".to_owned());
+        let wheels = (!self.wheel.is_empty()).then(|| match self.wheel.len() {
+            1 => "a wheel".to_owned(),
+            count => format!("{count} wheels"),
+        });
+        let constraint = self.nonholonomic.iter().map(|_| "a constraint of its own".to_owned());
+        let own = body.chain(own).chain(hamiltonian).chain(effects).chain(force).chain(constraint);
+        own.chain(control).chain(wheels).collect::<Vec<_>>().join(" + ")
+    }
+
+    fn about(&self) -> String {
+        let turn = self.turn_of_a_step().map(|turn| format!(", hΩ = {} rad", round(turn))).unwrap_or_default();
+        format!("{}, {}{turn}", self.sum(), self.run.about(self.has_steps_of_its_own()))
+    }
+
+    fn has_steps_of_its_own(&self) -> bool {
+        let is_varied = self.run.steps_per_orbit.is_some() || self.run.density.is_some();
+        is_varied || self.paced().is_some()
+    }
+
+    fn unwatched(mut self) -> Self {
+        self.event.clear();
+        self
+    }
 }

@@ -1,4 +1,4 @@
-//! Duration, steps and method of a run: the table `run`.
+//! Duration, steps and method of a run: the table `run` of every scene.
 
 use std::num::NonZeroU32;
 
@@ -6,11 +6,13 @@ use liestep::with::Scheme;
 use serde::Deserialize;
 
 use crate::file::method::scheme;
+use crate::file::mistake::SpanMessage;
 use crate::file::quantity::{Duration, Number, PositiveScalar, Rate, short};
+use crate::file::tables::{Document, has, span};
 
 /// The duration, the steps and the method.
 #[derive(Clone, Deserialize)]
-#[serde(try_from = "ScheduleTable")]
+#[serde(from = "ScheduleTable")]
 pub(crate) struct Schedule {
     /// s.
     pub(crate) duration: f64,
@@ -22,6 +24,8 @@ pub(crate) struct Schedule {
     pub(crate) steps_per_orbit: Option<NonZeroU32>,
     /// Density that varies the lengths of the steps; `step` is the first of them.
     pub(crate) density: Option<Density>,
+    /// Whether joints that are open at the start are closed.
+    pub(crate) nearest: bool,
 }
 
 /// A density of steps, by the names of [`liestep::with::densities`].
@@ -51,6 +55,8 @@ struct ScheduleTable {
     duration: PositiveScalar<Duration>,
     #[serde(default, deserialize_with = "scheme")]
     method: Scheme,
+    #[serde(default)]
+    nearest: bool,
 }
 
 /// Default accuracy of a run without a step: at the end the attitude is off by about 1e-6 rad.
@@ -58,21 +64,81 @@ const DEFAULT_ACCURACY: f64 = 1e-6;
 /// Most steps of a run, which take some minutes.
 const MOST_STEPS: f64 = 1e8;
 
-impl TryFrom<ScheduleTable> for Schedule {
-    type Error = String;
-
-    fn try_from(table: ScheduleTable) -> Result<Self, String> {
+impl From<ScheduleTable> for Schedule {
+    fn from(table: ScheduleTable) -> Self {
         let duration = table.duration.value;
         let is_left_open = table.step.is_none() && table.accuracy.is_none() && table.steps_per_orbit.is_none();
         let pace = match (table.step, table.accuracy) {
             // Replaced when the orbit is known.
             _ if table.steps_per_orbit.is_some() => Pace::Step { step: duration, steps: 1 },
-            (Some(step), _) => Pace::Step { step: step.value, steps: equal_steps(step.value, duration)? },
+            // Counted by `count`.
+            (Some(step), _) => Pace::Step { step: step.value, steps: 1 },
             (None, Some(accuracy)) => Pace::Accuracy(accuracy.value),
             (None, None) => Pace::Accuracy(DEFAULT_ACCURACY),
         };
-        let ScheduleTable { method, steps_per_orbit, density, .. } = table;
-        Ok(Self { duration, pace, is_left_open, method, steps_per_orbit, density })
+        let ScheduleTable { method, steps_per_orbit, density, nearest, .. } = table;
+        Self { duration, pace, is_left_open, method, steps_per_orbit, density, nearest }
+    }
+}
+
+impl Schedule {
+    /// Counts the steps of the file's `step`.
+    pub(crate) fn count(&mut self, document: &Document<'_>) -> Result<(), SpanMessage> {
+        if let (Pace::Step { step, steps }, None) = (&mut self.pace, self.steps_per_orbit) {
+            *steps =
+                equal_steps(*step, self.duration).map_err(|message| (span(document, &["run", "step"]), message))?;
+        }
+        Ok(())
+    }
+
+    /// The conflict of a step with an accuracy or a duration, or of an accuracy with a method.
+    pub(crate) fn at_odds(&self, document: &Document<'_>, has_steps_of_its_own: bool) -> Option<SpanMessage> {
+        let wrong = |key: &str, message: String| Some((span(document, &["run", key]), message));
+        if has(document, "run", "step") && has(document, "run", "accuracy") {
+            return wrong("accuracy", "a run has either a `step` or an `accuracy`".to_owned());
+        }
+        if let Pace::Step { step, .. } = self.pace
+            && !has_steps_of_its_own
+            && let Some(message) = fraction(step, self.duration)
+        {
+            return wrong("duration", message);
+        }
+        if matches!(self.pace, Pace::Accuracy(_)) && has(document, "run", "method") {
+            let message =
+                "an `accuracy`, which a run without a `step` has, chooses the method; give a `step` to choose it";
+            return wrong("method", message.to_owned());
+        }
+        None
+    }
+
+    /// The step, s; none where it is chosen for an accuracy.
+    pub(crate) const fn step(&self) -> Option<f64> {
+        if let Pace::Step { step, .. } = self.pace { Some(step) } else { None }
+    }
+
+    /// The step of a file that gives one, by which its kicks are to be stable, s.
+    pub(crate) fn given_step(&self) -> Option<f64> {
+        self.step().filter(|_| !self.is_left_open)
+    }
+
+    /// Advice where no step is found for an accuracy.
+    pub(crate) const fn advice(&self) -> &'static str {
+        if self.is_left_open {
+            "; a run without a `step` is one for an accuracy of 1e-6: give a `step`, or an `accuracy`"
+        } else {
+            ""
+        }
+    }
+
+    /// The steps in words.
+    pub(crate) fn about(&self, is_mean: bool) -> String {
+        match self.pace {
+            Pace::Step { step, .. } if is_mean => {
+                format!("{} s by steps of {} s on the average", short(self.duration), short(step))
+            }
+            Pace::Step { step, steps } => format!("{steps} steps of {} s", short(step)),
+            Pace::Accuracy(tolerance) => format!("{} s to {tolerance:e}", short(self.duration)),
+        }
     }
 }
 

@@ -6,8 +6,17 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::file::mistake::{Mistake, SpanMessage};
-use crate::file::scene::Sweep;
 use crate::file::tables::{Document, Keys, dotted, ends, measured, set};
+
+/// The scenes of a sweep: one for each combination of its values. The last key varies fastest.
+#[derive(Clone)]
+#[non_exhaustive]
+pub struct Sweep<S> {
+    /// The varied keys, such as `gravity.m`, in the order of the file.
+    pub names: Vec<String>,
+    /// Each scene, with the texts of its varied values.
+    pub points: Vec<(Vec<String>, S)>,
+}
 
 /// Most scenes of a sweep, each of which is a run.
 const MOST_POINTS: usize = 10_000;

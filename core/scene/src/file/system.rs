@@ -5,28 +5,23 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use liestep::recording;
 use liestep::with::Scheme;
 use nalgebra::Vector3;
 use serde::Deserialize;
 use toml::Spanned;
-use toml::de::{DeTable, Deserializer};
+use toml::de::Deserializer;
 
 use crate::file::column::{Column, Output};
+use crate::file::common::Parts;
 use crate::file::event::{Event, Quantity};
 use crate::file::joint::{Joint, JointTable, Limits, Names};
-use crate::file::method::scheme;
 use crate::file::mistake::{Lines, Mistake, SpanMessage, advised};
 use crate::file::part::{Between, BodyTable, SPACE, SystemBody};
 use crate::file::picture::PlanePicture;
 use crate::file::placed::place;
-use crate::file::quantity::{
-    Acceleration, Direction, Duration, Length, PositiveScalar, Scalar, Stiffness, Triple, round, short,
-};
-use crate::file::scene::Sweep;
-use crate::file::schedule::{equal_steps, fraction};
-use crate::file::sweep;
-use crate::file::tables::Document;
+use crate::file::quantity::{Acceleration, Direction, Length, PositiveScalar, Scalar, Stiffness, Triple, round};
+use crate::file::schedule::Schedule;
+use crate::file::tables::{Document, has, span};
 use crate::file::text::{check_name, title};
 
 /// Several bodies, with joints and springs between them.
@@ -42,10 +37,13 @@ use crate::file::text::{check_name, title};
 /// | | `limits` of a pin or a slider: `from` and `to`, angles or shifts, and whether the run is to `stop` where the joint passes one of them. They aren't imposed but watched: each passing is an event with the joint's name |
 /// | `[[spring]]` | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
 /// | `[[event]]` | as for [one body](crate::SceneFile), with an `energy`, or a `column` of the table and its `value`: `upper_z`, `joint-1_angle` |
-/// | `run` | `duration`; `step`, of which the duration is a whole number; `method`: `step`, or a `composition` by its name, as for [one body](crate::SceneFile), of systems without friction; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
+/// | `run` | `duration`; `step` or `accuracy` as for [one body](crate::SceneFile): without friction the cheapest of the step and its compositions is chosen, and with friction a step; `method`: `step`, or a `composition` by its name, of systems without friction; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
 /// | `picture` | `plane`: `xy`, `xz`, `yz`; by default the plane in which the motion is the widest |
 /// | `output` | `columns` that follow the time in a table, see [`Column`]; `every`: the number of steps from row to row |
-/// | `sweep` | as for [one body](crate::SceneFile): the key of a body, a joint or an event follows its name, `joint.elbow.damping` or `joint.joint-1.damping` |
+/// | `sweep`, `ensemble` | as for [one body](crate::SceneFile): the key of a body, a joint, a spring or an event follows its name, `joint.elbow.damping`, `spring.spring-1.k`; an ensemble draws keys of `body`, `gravity`, `joint` and `spring` |
+///
+/// The error of an `accuracy` is that of the attitudes and places of all bodies together, relative to their size, and of their
+/// velocities relative to the largest: turns in rad count as places in m, so that it is one for bodies of about a metre.
 ///
 /// Joints may form loops. Other effects on several bodies need a program: [`liestep::methods::Multibody`].
 #[derive(Clone)]
@@ -56,17 +54,15 @@ pub struct System {
     pub(crate) joints: Vec<Between<Joint>>,
     pub(crate) joint_names: Vec<String>,
     pub(crate) springs: Vec<Between<Spring>>,
-    pub(crate) step: f64,
-    pub(crate) steps: u32,
-    pub(crate) method: Scheme,
-    pub(crate) nearest: bool,
+    pub(crate) run: Schedule,
     pub(crate) picture: PlanePicture,
     pub(crate) output: Output,
     pub(crate) columns: Vec<Column>,
     /// The places of quaternions in a sample.
     pub(crate) quaternions: Arc<[usize]>,
     pub(crate) event: Vec<Event>,
-    pub(crate) sweep: Option<Box<Sweep<Self>>>,
+    /// Whether forces and torques of joints are asked for, by a column or by an event.
+    pub(crate) has_reactions: bool,
     pub(crate) path: PathBuf,
     pub(crate) places: SystemPlaces,
 }
@@ -101,7 +97,7 @@ struct SystemTable {
     spring: Vec<Spanned<SpringTable>>,
     #[serde(default)]
     event: Vec<Spanned<Event>>,
-    run: RunTable,
+    run: Schedule,
     #[serde(default)]
     picture: PlanePicture,
     #[serde(default)]
@@ -124,42 +120,10 @@ struct SpringTable {
     length: Scalar<Length>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RunTable {
-    step: Spanned<PositiveScalar<Duration>>,
-    method: Option<Spanned<MethodTable>>,
-    duration: Spanned<PositiveScalar<Duration>>,
-    #[serde(default)]
-    nearest: bool,
-}
-
-/// A method by its name.
-#[derive(Deserialize)]
-struct MethodTable(#[serde(deserialize_with = "scheme")] Scheme);
-
 impl System {
-    /// Parses the system of a text; `path` appears in messages.
-    ///
-    /// # Errors
-    ///
-    /// The first [`Mistake`] in it.
-    pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Self, Mistake> {
-        let path = path.as_ref();
-        let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
-        let sweep = document.get_mut().remove("sweep");
-        let lines = Lines::of(text);
-        let read = |document: &Document<'_>| Self::of_document(path, (text, &lines), document);
-        let mut system = read(&document)?;
-        if let Some(table) = sweep {
-            let located = |(span, message): SpanMessage| Mistake::at(path, lines.place(span.start), message);
-            system.sweep = Some(Box::new(sweep::read(&document, &table, &located, &read)?));
-        }
-        Ok(system)
-    }
-
     /// The system of a document without a sweep.
-    fn of_document(path: &Path, (text, lines): (&str, &Lines<'_>), document: &Document<'_>) -> Result<Self, Mistake> {
+    pub(crate) fn of_document(path: &Path, text: &str, document: &Document<'_>) -> Result<Self, Mistake> {
+        let lines = Lines::of(text);
         let table = SystemTable::deserialize(Deserializer::from(document.clone()))
             .map_err(|error| Mistake::of_toml(path, text, &error))?;
         let place = |span: &Range<usize>| lines.place(span.start);
@@ -167,32 +131,17 @@ impl System {
             bodies: table.body.iter().map(|body| place(&body.span())).collect(),
             joints: table.joint.iter().map(|joint| place(&joint.span())).collect(),
             springs: table.spring.iter().map(|spring| place(&spring.span())).collect(),
-            pace: place(&table.run.step.span()),
+            pace: place(&pace_of(document)),
         };
-        of_table(table, path, places).map_err(|(span, message)| Mistake::at(path, place(&span), message))
-    }
-
-    /// The scenes of the file's sweep.
-    #[must_use]
-    pub fn sweep(&self) -> Option<&Sweep<Self>> {
-        self.sweep.as_deref()
-    }
-
-    /// The title of the scene.
-    #[must_use]
-    pub fn title(&self) -> &str {
-        &self.title
+        let located = |(span, message): SpanMessage| Mistake::at(path, place(&span), message);
+        let mut system = of_table(table, path, places).map_err(located)?;
+        system.run.count(document).map_err(located)?;
+        at_odds(document, &system).map_or(Ok(system), Err).map_err(located)
     }
 
     /// The names of the bodies.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.bodies.iter().map(|body| body.name.as_str())
-    }
-
-    /// The columns that follow the time in a table. The gap of pins has the unit `m, 1`.
-    #[must_use]
-    pub fn columns(&self) -> Vec<recording::Column> {
-        Column::listed(&self.columns)
     }
 
     /// All columns that a table can have.
@@ -201,19 +150,19 @@ impl System {
         Column::of_system(&self.names().collect::<Vec<_>>(), &joints.collect::<Vec<_>>())
     }
 
-    /// The names of the events, those of joints with limits after those of the file.
-    pub fn events(&self) -> impl Iterator<Item = &str> {
-        let of_joints = self.limited().map(|(joint, _)| self.joint_names[joint].as_str());
-        self.event.iter().map(|event| event.name.as_str()).chain(of_joints)
-    }
-
     /// The numbers of the joints with limits, and the limits.
     pub(crate) fn limited(&self) -> impl Iterator<Item = (usize, Limits)> {
         self.joints.iter().enumerate().filter_map(|(number, joint)| Some((number, joint.of.limits?)))
     }
 
-    /// Whether forces and torques of joints are asked for, by a column or by an event.
-    pub(crate) fn has_reactions(&self) -> bool {
+    /// The place of the first number of a sample that is one of joints.
+    pub(crate) fn joint_columns(&self) -> usize {
+        let gap = self.all_columns().iter().find(|column| column.key() == "gap").and_then(Column::part);
+        gap.map_or(usize::MAX, |gap| gap.end)
+    }
+
+    /// Whether a column or an event needs forces or torques of joints.
+    fn asks_for_reactions(&self) -> bool {
         let is_reaction = |column: &Column| ["force", "torque"].contains(&column.key());
         let all = self.all_columns();
         let is_seen = |place: usize| {
@@ -227,22 +176,48 @@ impl System {
         self.columns.iter().any(is_reaction) || places.into_iter().any(is_seen)
     }
 
-    /// A description of the parts and the steps, in words.
-    #[must_use]
-    pub fn about(&self) -> String {
-        let turn = |body: &SystemBody| format!("{} ({})", round(self.step * body.start.velocity.norm()), body.name);
-        let turns: Vec<_> = self.bodies.iter().map(turn).collect();
-        let (sum, steps, step) = (self.sum(), self.steps, short(self.step));
-        format!("{sum}, {steps} steps of {step} s, hΩ in rad: {}", turns.join(", "))
+    /// The number of the first joint with friction, which has no step back.
+    pub(crate) fn joint_with_friction(&self) -> Option<usize> {
+        self.joints.iter().position(|joint| joint.of.terms.damping.is_some() || joint.of.terms.friction.is_some())
     }
 
     /// Whether gaps of joints are cosines in part.
     pub(crate) fn has_cosines(&self) -> bool {
         self.joints.iter().any(|joint| joint.of.kind.has_cosines())
     }
+}
 
-    /// A description of the parts, in words.
-    pub(crate) fn sum(&self) -> String {
+impl Parts for System {
+    fn title(&self) -> &str {
+        &self.title
+    }
+
+    fn schedule(&self) -> &Schedule {
+        &self.run
+    }
+
+    fn schedule_mut(&mut self) -> &mut Schedule {
+        &mut self.run
+    }
+
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn output(&self) -> &Output {
+        &self.output
+    }
+
+    fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn event_names(&self) -> Vec<&str> {
+        let of_joints = self.limited().map(|(joint, _)| self.joint_names[joint].as_str());
+        self.event.iter().map(|event| event.name.as_str()).chain(of_joints).collect()
+    }
+
+    fn sum(&self) -> String {
         let counted = |count: usize, one: &str| match count {
             0 => None,
             1 => Some(format!("1 {one}")),
@@ -253,6 +228,21 @@ impl System {
         let gravity = self.gravity.is_some().then(|| "gravity".to_owned());
         let all = [bodies, gravity, counted(self.joints.len(), "joint"), counted(self.springs.len(), "spring")];
         all.into_iter().flatten().collect::<Vec<_>>().join(" + ")
+    }
+
+    fn about(&self) -> String {
+        let turn =
+            |step: f64, body: &SystemBody| format!("{} ({})", round(step * body.start.velocity.norm()), body.name);
+        let turns = self.run.step().map_or_else(String::new, |step| {
+            let turns: Vec<_> = self.bodies.iter().map(|body| turn(step, body)).collect();
+            format!(", hΩ in rad: {}", turns.join(", "))
+        });
+        format!("{}, {}{turns}", self.sum(), self.run.about(false))
+    }
+
+    fn unwatched(mut self) -> Self {
+        self.joints.iter_mut().for_each(|joint| joint.of.limits = None);
+        Self { event: Vec::new(), columns: Vec::new(), has_reactions: false, ..self }
     }
 }
 
@@ -290,13 +280,6 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         return Err((span, message.to_owned()));
     }
     let springs = springs_of(table.spring, (&bodies, &numbered))?;
-    let step = table.run.step.get_ref().value;
-    let duration = table.run.duration.get_ref().value;
-    let steps = equal_steps(step, duration).map_err(|message| (table.run.step.span(), message))?;
-    if let Some(message) = fraction(step, duration) {
-        return Err((table.run.duration.span(), message));
-    }
-    let method = table.run.method;
     let mut system = System {
         title: table.title,
         bodies,
@@ -304,16 +287,13 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         joints,
         joint_names,
         springs,
-        step,
-        steps,
-        method: Scheme::Step,
-        nearest: table.run.nearest,
+        run: table.run,
         picture: table.picture,
         output: table.output,
         columns: Vec::new(),
         quaternions: [].into(),
         event: Vec::new(),
-        sweep: None,
+        has_reactions: false,
         path: path.to_owned(),
         places,
     };
@@ -321,10 +301,6 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     system.columns = system.output.columns(&all, &DEFAULT)?;
     name_twice(&system.columns)
         .map_or(Ok(()), |name| Err(shared(&name, &system.names().collect::<Vec<_>>(), &names)))?;
-    if let Some(method) = method {
-        let (span, MethodTable(scheme)) = (method.span(), method.into_inner());
-        system.method = of_method(scheme, &system).map_err(|message| (span, message))?;
-    }
     system.quaternions = quaternions(&all);
     for event in table.event {
         let span = event.span();
@@ -332,6 +308,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
         event.placed((&all, &system.quaternions), Err(SEVERAL), &|| span.clone())?;
         system.event.push(event);
     }
+    system.has_reactions = system.asks_for_reactions();
     Ok(system)
 }
 
@@ -345,25 +322,41 @@ fn springs_of(springs: Vec<Spanned<SpringTable>>, bodies: Named<'_>) -> Result<V
     springs.collect()
 }
 
-/// A method, or why the system can't have it.
-fn of_method(scheme: Scheme, system: &System) -> Result<Scheme, String> {
-    match scheme {
-        Scheme::Step => Ok(scheme),
+/// The place of the key by which a run has its steps.
+fn pace_of(document: &Document<'_>) -> Range<usize> {
+    let key = if has(document, "run", "accuracy") { "accuracy" } else { "step" };
+    span(document, &["run", key])
+}
+
+/// The conflict of a run with the bodies.
+fn at_odds(document: &Document<'_>, system: &System) -> Option<SpanMessage> {
+    let wrong = |key: &str, message: String| Some((span(document, &["run", key]), message));
+    if has(document, "run", "steps_per_orbit") {
+        let message = "`steps_per_orbit` are those of one body on an orbit: give a `step` or an `accuracy`";
+        return wrong("steps_per_orbit", message.to_owned());
+    }
+    if has(document, "run", "density") {
+        return wrong("density", "a `density` is that of one body: leave it out".to_owned());
+    }
+    let of_method = || Some((span(document, &["run", "method"]), of_method(system)?));
+    system.run.at_odds(document, false).or_else(of_method)
+}
+
+/// The reason why the system can't have its method.
+fn of_method(system: &System) -> Option<String> {
+    match system.run.method {
+        Scheme::Step => None,
         Scheme::Composition(composition) if composition.base() != 2 => {
             let (name, base) = (composition.name(), composition.base());
-            Err(format!("{name} composes a step of order {base}, and that of several bodies is of order 2"))
+            Some(format!("{name} composes a step of order {base}, and that of several bodies is of order 2"))
         }
-        Scheme::Composition(_) => {
-            let has_friction = |joint: &Between<Joint>| joint.of.terms.damping.or(joint.of.terms.friction.map(|_| 0.0));
-            match system.joints.iter().position(|joint| has_friction(joint).is_some()) {
-                Some(joint) => Err(format!(
-                    "a composition has steps back, in which friction adds energy, and `{}` has some: leave one of both out",
-                    system.joint_names[joint]
-                )),
-                None => Ok(scheme),
-            }
-        }
-        _ => Err("several bodies have their own step, or a `composition` of it".to_owned()),
+        Scheme::Composition(_) => system.joint_with_friction().map(|joint| {
+            format!(
+                "a composition has steps back, in which friction adds energy, and `{}` has some: leave one of both out",
+                system.joint_names[joint]
+            )
+        }),
+        _ => Some("several bodies have their own step, or a `composition` of it".to_owned()),
     }
 }
 

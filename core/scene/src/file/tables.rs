@@ -22,6 +22,11 @@ pub(crate) fn span(document: &Document<'_>, keys: &[&str]) -> Range<usize> {
     span
 }
 
+/// Whether a table of the document has this key.
+pub(crate) fn has(document: &Document<'_>, table: &str, key: &str) -> bool {
+    document.get_ref().get(table).and_then(|table| table.get_ref().get(key)).is_some()
+}
+
 /// The keys that lead to a value.
 pub(crate) type Keys = Vec<Spanned<String>>;
 

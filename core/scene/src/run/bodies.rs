@@ -93,8 +93,12 @@ pub(crate) struct Cord {
 }
 
 impl System {
-    /// The stepper, and the functions of joints that the others imply at the start, which are left out.
-    pub(crate) fn multibody(&self) -> Result<(MultibodyStepper, Vec<Redundancy>), SetupError> {
+    /// The stepper by a method and a step, s, and the functions of joints that the others imply at the start, which are left out.
+    pub(crate) fn multibody(
+        &self,
+        method: Scheme,
+        step: f64,
+    ) -> Result<(MultibodyStepper, Vec<Redundancy>), SetupError> {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
         let mut system = Multibody::new();
         for body in &self.bodies {
@@ -120,8 +124,8 @@ impl System {
         }
         let places: Vec<_> = self.given().into_iter().map(|(place, _)| place).collect();
         let (system, left_out) = system.independent(&places)?;
-        let stepper = system.stepper(self.step)?;
-        let stepper = if let Scheme::Composition(scheme) = self.method { stepper.composed(scheme)? } else { stepper };
+        let stepper = system.stepper(step)?;
+        let stepper = if let Scheme::Composition(scheme) = method { stepper.composed(scheme)? } else { stepper };
         Ok((stepper, left_out))
     }
 
@@ -139,7 +143,7 @@ impl System {
     pub(crate) fn start(&self, stepper: &MultibodyStepper) -> Result<Box<[f64]>, SetupError> {
         let (bodies, velocities): (Vec<_>, Vec<_>) = self.given().into_iter().unzip();
         let started = stepper.start(&bodies, &velocities);
-        if !self.nearest {
+        if !self.run.nearest {
             return started;
         }
         if started.is_ok() {

@@ -1,4 +1,4 @@
-//! The choice of a scene's types and method, made once per run.
+//! The stepper of one body, or of a Lagrangian of the file's own, by its method and step.
 
 use std::cell::RefCell;
 
@@ -8,15 +8,16 @@ use liestep::motion::{AnyStepper, Integrator as _};
 use liestep::with::{Method, Scheme};
 use liestep_late::{Course, Declaration, Question, QuestionError, for_accuracy};
 
+use crate::file::common::Parts as _;
 use crate::file::effects::{RotorTable, TorqueTable};
 use crate::file::lagrangian::Backend;
 use crate::file::quantity::Triple;
 use crate::file::scene::SceneFile;
 use crate::file::schedule::{Density, Pace};
-use crate::run::course::{MemberStart, course, sample, watches};
 use crate::run::data::{Data, LibraryBody, Whole, inertia, nothing, numbers, whole_error};
 use crate::run::devices::Devices;
-use crate::run::make::{Listeners, Run, Stop, make};
+use crate::run::make::Stop;
+use crate::run::moving::MemberStart;
 
 /// The step of a scene for members of an ensemble in lanes. `None` for another method, for varying steps, and for effects
 /// along orbits.
@@ -35,31 +36,6 @@ pub(crate) fn member(file: &SceneFile, whole: &Whole) -> Result<MemberStart, Sto
     let J = inertia(file)?;
     let Data { numbers, .. } = Data::of(file, &J)?;
     let stepper = whole.with(&numbers, step).map_err(Stop::Setup)?.into_joinable();
-    let state = file.start.state(&stepper).map_err(Stop::Start)?;
-    Ok((stepper, state))
-}
-
-/// Simulates a scene, whose step is data: one program of all terms.
-pub(crate) fn run(file: &SceneFile, listeners: Listeners<'_>) -> Result<Run, Stop> {
-    match file.run.pace {
-        Pace::Accuracy(tolerance) => ask(file, tolerance, listeners),
-        Pace::Step { step, steps } => by(&by_steps(file, step)?, file, steps, listeners),
-    }
-}
-
-/// Runs this many steps of a stepper.
-fn by(stepper: &AnyStepper, file: &SceneFile, steps: u32, listeners: Listeners<'_>) -> Result<Run, Stop> {
-    let (state, view) = (file.start.state(stepper).map_err(Stop::Start)?, file.view());
-    make(stepper, state, course(file, u64::from(steps)), |now| sample(&view, now), watches(file), listeners)
-}
-
-/// The stepper with the file's `step`, and the initial state.
-pub(crate) fn stepper(file: &SceneFile) -> Result<MemberStart, Stop> {
-    let Pace::Step { step, .. } = file.run.pace else {
-        return Err(Stop::Other("the step is chosen for an accuracy by trial runs".to_owned()));
-    };
-    file.check_kicks()?;
-    let stepper = by_steps(file, step)?;
     let state = file.start.state(&stepper).map_err(Stop::Start)?;
     Ok((stepper, state))
 }
@@ -121,7 +97,7 @@ fn with_devices(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop
 }
 
 /// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.
-fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
+pub(crate) fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
     let J = inertia(file)?;
     if file.has_devices() {
         return with_devices(file, J, h);
@@ -147,41 +123,16 @@ fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
     data()
 }
 
-/// Fewest steps of a run whose number of steps is left open. With fewer, curves would look like polygons.
-const FEWEST: u32 = 1000;
-
-/// The scene with the chosen method and the fewest steps, if the number of steps is left open and the choice has fewer.
-fn refined(file: &SceneFile, choice: &Choice) -> Option<(SceneFile, f64)> {
-    let is_coarse = file.run.is_left_open && choice.steps < u64::from(FEWEST);
-    let step = file.run.duration / f64::from(FEWEST);
-    let mut refined = file.clone();
-    (refined.run.method, refined.run.pace) = (choice.chosen().scheme, Pace::Step { step, steps: FEWEST });
-    is_coarse.then_some((refined, step))
-}
-
-/// Runs the steps that an accuracy requires.
-fn ask(file: &SceneFile, tolerance: f64, listeners: Listeners<'_>) -> Result<Run, Stop> {
-    let accuracy = Accuracy { tolerance, horizon: file.run.duration };
-    let J = inertia(file)?;
-    let (any, choice) = searched(file, &Data::of(file, &J)?, accuracy)?;
-    let mut run = if let Some((file, step)) = refined(file, &choice) {
-        by(&by_steps(&file, step)?, &file, FEWEST, listeners)?
-    } else {
-        let (state, view) = (file.start.state(&any).map_err(Stop::Start)?, file.view());
-        make(&any, state, course(file, choice.steps), |now| sample(&view, now), watches(file), listeners)?
-    };
-    run.choice = Some(choice);
-    Ok(run)
-}
-
-/// The stepper that is the cheapest for an accuracy.
-fn searched(file: &SceneFile, data: &Data, accuracy: Accuracy) -> Result<(AnyStepper, Choice), Stop> {
+/// The cheapest choice of method and step for an accuracy.
+pub(crate) fn searched(file: &SceneFile, accuracy: Accuracy) -> Result<Choice, Stop> {
+    let data = Data::of(file, &inertia(file)?)?;
     let stepper = data.stepper(Method::default(), accuracy.horizon).map_err(whole_error)?;
     let state = file.start.state(&stepper).map_err(Stop::Start)?;
     let velocity = if file.start.is_by_momentum { stepper.velocity(&state) } else { file.start.velocity.clone() };
     let question = Question { accuracy, attitude: &file.start.attitude, velocity: &velocity };
-    for_accuracy::<Backend>(data.sum, &data.numbers, question).map_err(|error| match error {
-        QuestionError::Whole(error) => whole_error(error),
-        QuestionError::Accuracy(error) => Stop::Accuracy(error),
-    })
+    match for_accuracy::<Backend>(data.sum, &data.numbers, question) {
+        Ok((_, choice)) => Ok(choice),
+        Err(QuestionError::Whole(error)) => Err(whole_error(error)),
+        Err(QuestionError::Accuracy(error)) => Err(Stop::Accuracy(error)),
+    }
 }

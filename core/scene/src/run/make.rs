@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::fmt;
 
 use liestep::accuracy::{AccuracyError, Choice};
-use liestep::motion::{Integrator, Moment};
+use liestep::motion::{AnyState, AnyStepper, Integrator as _, Moment};
 use liestep::recording::{self, Reason, RecordError, Recorder, RunError, Sink};
 use liestep::{SetupError, StepError};
 
@@ -131,15 +131,26 @@ pub(crate) struct Course<'a> {
 }
 
 /// The function that passes zero where an event happens.
-pub(crate) type EventFunction<I> = Box<dyn Fn(&Moment<'_, I>) -> f64>;
+pub type EventFunction = Box<dyn Fn(&Moment<'_, AnyStepper>) -> f64 + Send + Sync>;
+
+/// An event of a scene.
+#[non_exhaustive]
+pub struct Watch {
+    /// The kind of passages that are events.
+    pub event: recording::Event,
+    /// The function that passes zero at the event.
+    pub function: EventFunction,
+    /// Whether the event ends the motion.
+    pub stops: bool,
+}
 
 /// Runs the steps, unless an event stops the run, and records as many samples as a picture needs.
-pub(crate) fn make<I: Integrator<Scalar: Into<f64>>>(
-    stepper: &I,
-    mut state: I::State,
+pub(crate) fn make(
+    stepper: &AnyStepper,
+    mut state: AnyState,
     course: Course<'_>,
-    sample: impl Fn(&Moment<'_, I>) -> Sample,
-    events: Vec<(recording::Event, EventFunction<I>)>,
+    sample: impl Fn(&Moment<'_, AnyStepper>) -> Sample,
+    events: Vec<Watch>,
     listeners: Listeners<'_>,
 ) -> Result<Run, Stop> {
     let (mut samples, happenings) = (Vec::new(), RefCell::new(Vec::new()));
@@ -151,8 +162,9 @@ pub(crate) fn make<I: Integrator<Scalar: Into<f64>>>(
         .every(picture_stride(steps), |now| keep(&mut samples, sample(now)))
         .every(stride, |now| table.as_mut().map_or(Ok(()), |table| table.record(now, sample(now))))
         .progress(listeners.progress);
-    for (event, (kind, function)) in events.into_iter().enumerate() {
+    for (event, Watch { event: kind, function, stops }) in events.into_iter().enumerate() {
         let (happenings, sample) = (&happenings, &sample);
+        let kind = if stops { kind.terminal() } else { kind };
         observed = observed.event(kind, function, move |now| {
             let mut happenings = happenings.borrow_mut();
             if happenings.len() >= MOST_HAPPENINGS {
@@ -184,7 +196,7 @@ pub(crate) fn make<I: Integrator<Scalar: Into<f64>>>(
     #[allow(clippy::cast_precision_loss)] // a count
     let (step, average) = match until {
         Some(_) => (samples.last().map_or(0.0, |last| last.time) / end.steps.max(1) as f64, " on the average"),
-        None => (stepper.step_size().into(), ""),
+        None => (stepper.step_size(), ""),
     };
     Ok(Run {
         samples,
@@ -206,17 +218,17 @@ fn keep(samples: &mut Vec<Sample>, mut now: Sample) {
 }
 
 /// The writer of a table during a run.
-struct TableRecorder<'a, I: Integrator> {
+struct TableRecorder<'a> {
     columns: &'a [Column],
-    recorder: Recorder<'a, I, &'a mut dyn Sink>,
+    recorder: Recorder<'a, AnyStepper, &'a mut dyn Sink>,
     /// The first and the last state of the table.
     ends: Option<(Sample, Sample)>,
     /// The last row, from which each quantity of the recorder reads its number.
     numbers: &'a RefCell<Vec<f64>>,
 }
 
-impl<'a, I: Integrator<Scalar: Into<f64>>> TableRecorder<'a, I> {
-    fn new(course: Course<'a>, numbers: &'a RefCell<Vec<f64>>, stepper: &I, sink: &'a mut dyn Sink) -> Self {
+impl<'a> TableRecorder<'a> {
+    fn new(course: Course<'a>, numbers: &'a RefCell<Vec<f64>>, stepper: &AnyStepper, sink: &'a mut dyn Sink) -> Self {
         let mut recorder = Recorder::bare(stepper, sink);
         for (place, recording::Column { name, unit }) in course.listed.into_iter().enumerate() {
             let number = move |_: &Moment<'_, _>| numbers.borrow().get(place).copied().unwrap_or(f64::NAN);
@@ -225,7 +237,7 @@ impl<'a, I: Integrator<Scalar: Into<f64>>> TableRecorder<'a, I> {
         Self { columns: course.columns, recorder, ends: None, numbers }
     }
 
-    fn record(&mut self, now: &Moment<'_, I>, mut sample: Sample) -> Result<(), RecordError> {
+    fn record(&mut self, now: &Moment<'_, AnyStepper>, mut sample: Sample) -> Result<(), RecordError> {
         let (first, last) = self.ends.get_or_insert_with(|| (sample.clone(), sample.clone()));
         sample.follow(last);
         *last = sample;
@@ -234,7 +246,7 @@ impl<'a, I: Integrator<Scalar: Into<f64>>> TableRecorder<'a, I> {
     }
 
     /// Adds the last row, and finishes the table.
-    fn finish(mut self, end: &Moment<'_, I>, sample: Sample) -> Result<(), RecordError> {
+    fn finish(mut self, end: &Moment<'_, AnyStepper>, sample: Sample) -> Result<(), RecordError> {
         let is_written = self.ends.as_ref().is_some_and(|(_, last)| last.time >= sample.time);
         let recorded = if is_written { Ok(()) } else { self.record(end, sample) };
         recorded.and_then(|()| self.recorder.finish().map(|_| ()))

@@ -5,6 +5,7 @@ use liestep::with::{Method, Scheme};
 use liestep_derivation::{ParameterKind, Role};
 use liestep_late::{Declaration, Whole, numbered};
 
+use crate::file::common::Parts as _;
 use crate::file::effects::EFFECTS;
 use crate::file::scene::SceneFile;
 use crate::file::schedule::Pace;

@@ -16,24 +16,23 @@ struct BodyMotion {
 }
 
 /// The entries of the attitude and of the place of a body.
-const ENTRIES: usize = 9 + 16;
+pub(crate) const ENTRIES: usize = 9 + 16;
+
+/// The attitude and the place of a body by its number, from the attitudes of all; `None` is space.
+pub(crate) fn pose(body: Option<usize>, attitudes: &[f64]) -> Pose {
+    let Some(body) = body else { return (Matrix3::identity(), Vector3::zeros()) };
+    let at = |place: usize| attitudes.get(ENTRIES * body + place).copied().unwrap_or(f64::NAN);
+    // The place is the last column of a matrix with four rows.
+    (Matrix3::from_fn(|row, column| at(3 * row + column)), Vector3::from_fn(|row, _| at(9 + 4 * row + 3)))
+}
 
 /// The motion of a body by its number; `None` is space.
 fn motion_of(body: Option<usize>, attitude: &[f64], velocity: &[f64]) -> BodyMotion {
-    let at = |numbers: &[f64], place: usize| numbers.get(place).copied().unwrap_or(f64::NAN);
-    let Some(body) = body else {
-        let none = Vector3::zeros();
-        return BodyMotion { pose: (Matrix3::identity(), none), turning: none, moving: none };
+    let vector = |first: usize| {
+        let part = |row: usize| velocity.get(6 * body? + first + row).copied();
+        Vector3::from_fn(|row, _| part(row).unwrap_or(if body.is_some() { f64::NAN } else { 0.0 }))
     };
-    let vector =
-        |numbers: &[f64], first: usize, step: usize| Vector3::from_fn(|row, _| at(numbers, first + step * row));
-    let rows = Matrix3::from_fn(|row, column| at(attitude, ENTRIES * body + 3 * row + column));
-    BodyMotion {
-        // The place is the last column of a matrix with four rows.
-        pose: (rows, vector(attitude, ENTRIES * body + 9 + 3, 4)),
-        turning: vector(velocity, 6 * body, 1),
-        moving: vector(velocity, 6 * body + 3, 1),
-    }
+    BodyMotion { pose: pose(body, attitude), turning: vector(0), moving: vector(3) }
 }
 
 impl System {

@@ -2,16 +2,14 @@
 
 use std::ops::Range;
 
-use liestep::with::Scheme;
 use nalgebra::Vector3;
 
+use crate::file::kinds::{Scene, of_parts};
 use crate::file::quantity::round;
 use crate::file::sample::Sample;
-use crate::file::scene::SceneFile;
 use crate::file::schedule::Pace;
-use crate::file::system::System;
-use crate::run::choose;
 use crate::run::make::{Listeners, Run, Stop};
+use crate::run::moving::{self, Moving};
 
 /// Difference of attitudes, rad, beyond which two runs are different motions.
 const ANOTHER: f64 = 1.0;
@@ -23,7 +21,7 @@ const SHARE: f64 = 0.5;
 struct Differences([f64; 4]);
 
 impl Differences {
-    fn of(one: &Sample, other: &Sample, parts: Option<&Parts>) -> Self {
+    fn of(one: &Sample, other: &Sample, parts: Option<&Places>) -> Self {
         if let Some(parts) = parts {
             let [attitude, velocity] = parts.clone().map(|part| distance(one, other, part));
             return Self([0.0, 0.0, attitude, velocity]);
@@ -45,7 +43,7 @@ impl Differences {
 }
 
 /// The places of attitude and velocity among the numbers of a sample.
-type Parts = [Range<usize>; 2];
+type Places = [Range<usize>; 2];
 
 /// The norm of the difference of some numbers of two samples.
 fn distance(one: &Sample, other: &Sample, part: Range<usize>) -> f64 {
@@ -54,7 +52,7 @@ fn distance(one: &Sample, other: &Sample, part: Range<usize>) -> f64 {
 }
 
 /// The largest angular and linear velocities, rad/s and m/s, and the largest distance of a body from its start, m.
-fn largest(run: &Run, parts: Option<&Parts>) -> [f64; 3] {
+fn largest(run: &Run, parts: Option<&Places>) -> [f64; 3] {
     let Some(first) = run.samples().first() else { return [0.0; 3] };
     let mut most = [0.0_f64; 3];
     if let Some([attitude, velocity]) = parts {
@@ -75,7 +73,12 @@ fn largest(run: &Run, parts: Option<&Parts>) -> [f64; 3] {
 
 /// The line about the end of a run; `order` is that of its method. `again` simulates a number of steps of a length, s.
 /// A scene on a group other than SO(3) has `parts`.
-fn line(run: &Run, order: u32, parts: Option<&Parts>, again: impl Fn(u32, f64) -> Result<Run, Stop>) -> Option<String> {
+fn line(
+    run: &Run,
+    order: u32,
+    parts: Option<&Places>,
+    again: impl Fn(u32, f64) -> Result<Run, Stop>,
+) -> Option<String> {
     let steps = u32::try_from(run.steps()).ok().filter(|steps| *steps > 0)?;
     // The second run has half as many steps; twice as many if that isn't a whole number, or if longer steps fail.
     let longer = (steps % 2 == 0).then(|| again(steps / 2, 2.0 * run.step()).ok()).flatten();
@@ -128,38 +131,23 @@ fn line(run: &Run, order: u32, parts: Option<&Parts>, again: impl Fn(u32, f64) -
     ))
 }
 
-impl SceneFile {
+impl Scene {
     /// A line about the error at the end of a run, estimated by a second run with half as many steps, or twice as many.
     /// Empty where steps vary or were chosen for an accuracy.
     #[must_use]
     pub fn end_error(&self, run: &Run) -> String {
-        if self.has_steps_of_its_own() || run.choice.is_some() {
-            return String::new();
-        }
-        let order = match self.run.method {
-            Scheme::Step => self.order(),
-            scheme => scheme.order(),
-        };
-        let again = |steps, step| {
-            let mut second = self.clone();
-            second.run.pace = Pace::Step { step, steps };
-            second.event.clear();
-            choose::run(&second, Listeners { progress: &mut |_| (), table: None })
-        };
-        let parts = (!self.group.is_rotation()).then(|| [self.group.attitude(), self.group.velocity()]);
-        line(run, order, parts.as_ref(), again).unwrap_or_default()
+        of_parts!(self, parts => end_error(parts, run))
     }
 }
 
-impl System {
-    /// A line about the error at the end of a run, see [`SceneFile::end_error`].
-    #[must_use]
-    pub fn end_error(&self, run: &Run) -> String {
-        let again = |steps, step| {
-            let mut second = Self { step, steps, event: Vec::new(), columns: Vec::new(), ..self.clone() };
-            second.joints.iter_mut().for_each(|joint| joint.of.limits = None);
-            second.simulate(u64::from(steps), Listeners { progress: &mut |_| (), table: None })
-        };
-        line(run, self.method.order(), None, again).unwrap_or_default()
+fn end_error<P: Moving>(parts: &P, run: &Run) -> String {
+    if parts.has_steps_of_its_own() || run.choice.is_some() {
+        return String::new();
     }
+    let again = |steps, step| {
+        let mut second = parts.clone().unwatched();
+        second.schedule_mut().pace = Pace::Step { step, steps };
+        moving::run(&second, Listeners { progress: &mut |_| (), table: None })
+    };
+    line(run, parts.order(), parts.places().as_ref(), again).unwrap_or_default()
 }

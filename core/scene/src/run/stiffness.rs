@@ -98,12 +98,13 @@ impl Between<Spring> {
 }
 
 impl System {
-    /// A note about a step that is long for the springs at these places, if it is.
+    /// A note about a step that is long for the springs at these places, if it is; none about a step that was chosen for an
+    /// accuracy.
     ///
     /// # Errors
     ///
     /// The step is unstable, or a spring has no direction.
-    pub(crate) fn check_springs(&self, places: &[(SO3, R3)]) -> Result<Option<OfSpring>, Stop> {
+    pub(crate) fn check_springs(&self, places: &[(SO3, R3)], step: Option<f64>) -> Result<Option<OfSpring>, Stop> {
         if self.springs.is_empty() {
             return Ok(None);
         }
@@ -112,14 +113,15 @@ impl System {
                 return Err(Stop::Spring(number, NO_DIRECTION.to_owned()));
             }
         }
+        let Some(step) = step else { return Ok(None) };
         let free = self.free_motions(places);
         let Some((number, now)) = self.fastest(places, free.as_ref(), false) else { return Ok(None) };
-        if self.step * now >= UNSTABLE {
-            return Err(Stop::Spring(number, unstable(now, self.step)));
+        if step * now >= UNSTABLE {
+            return Err(Stop::Spring(number, unstable(now, step)));
         }
         let (any, most) = self.fastest(places, free.as_ref(), true).unwrap_or((number, now));
-        let number = if self.step * now > COARSE { number } else { any };
-        Ok(coarse(now, most, self.step).map(|why| (number, why)))
+        let number = if step * now > COARSE { number } else { any };
+        Ok(coarse(now, most, step).map(|why| (number, why)))
     }
 
     /// The spring with the largest part in the fastest vibration, and its rate, rad/s: in the springs' present

@@ -4,10 +4,10 @@ use liestep::mechanics::Inertia;
 use liestep::with::Scheme;
 use nalgebra::{Matrix3, Vector3};
 
+use crate::file::common::Parts as _;
 use crate::file::orbit::VectorInTime;
 use crate::file::quantity::{round, short};
 use crate::file::scene::SceneFile;
-use crate::file::schedule::Pace;
 use crate::run::make::{Note, Stop};
 use crate::run::stiffness::{NO_DIRECTION, UNSTABLE, coarse, has_no_direction, inverse_root, unstable};
 
@@ -48,10 +48,7 @@ impl SceneFile {
     /// The step of a scene whose potentials are kicks at its ends, s.
     fn kicked_by(&self) -> Option<f64> {
         let is_own_step = matches!(self.run.method, Scheme::Step) && !self.has_steps_of_its_own();
-        match self.run.pace {
-            Pace::Step { step, .. } if is_own_step => Some(step),
-            _ => None,
-        }
+        self.run.given_step().filter(|_| is_own_step)
     }
 
     /// The largest rates of the swings by each potential other than the spring's, rad/s.

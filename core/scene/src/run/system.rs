@@ -1,24 +1,27 @@
 //! The run of a system of several bodies.
 
-use std::error::Error;
 use std::sync::Arc;
 
-use liestep::methods::{MultibodyStepper, Redundancy};
-use liestep::motion::{AnyStepper, Moment};
-use liestep::recording::{self, Sink};
+use liestep::accuracy::{Accuracy, Candidate, Choice, choose, displacement, of_any_group};
+use liestep::methods::Redundancy;
+use liestep::motion::{AnyStepper, Moment, Propagator};
+use liestep::recording;
+use liestep::with::Scheme;
 use liestep::{SO3, SetupError, StepError};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::file::body::Kinetic;
-use crate::file::joint::{Joint, Limits, Pose};
+use crate::file::column::Column;
+use crate::file::joint::{Joint, Limits};
 use crate::file::mistake::Mistake;
 use crate::file::part::{Between, SystemBody};
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::system::System;
-use crate::run::course::MemberStart;
-use crate::run::course::{ended, kind, of_any};
-use crate::run::make::{Course, EventFunction, Listeners, Note, Run, Stop, fast_turn, make, told};
+use crate::run::course::watch;
+use crate::run::make::{Note, Run, Stop, Watch, fast_turn, told};
+use crate::run::motors::{ENTRIES, pose};
+use crate::run::moving::{Begun, Moving, Sampler};
 
 /// The quantity that violates a constraint, for messages.
 const GAP: &str = "lengths in m and cosines of axes together";
@@ -27,22 +30,16 @@ const GAP: &str = "lengths in m and cosines of axes together";
 const FAR: &str =
     "numbers of this joint, or of its bodies, are so large or so different that no digit is left; give nearer ones";
 
-fn pose(stepper: &MultibodyStepper, state: &[f64], body: Option<usize>) -> Pose {
-    let Some(body) = body else { return (Matrix3::identity(), Vector3::zeros()) };
-    let (attitude, place) = stepper.attitude(state, body);
-    (*attitude.as_matrix(), place.translation())
-}
-
 /// The angle and the shift of a joint, see [`Joint::coordinates`].
-fn coordinates(joint: &Between<Joint>, stepper: &MultibodyStepper, state: &[f64]) -> [f64; 2] {
-    let [above, below] = joint.bodies.map(|body| pose(stepper, state, body));
+fn coordinates(joint: &Between<Joint>, state: &[f64]) -> [f64; 2] {
+    let [above, below] = joint.bodies.map(|body| pose(body, state));
     joint.of.coordinates([&above, &below])
 }
 
 /// The function that rises through zero where a joint passes one of its limits.
-fn beyond(joint: &Between<Joint>, limits: Limits, stepper: &MultibodyStepper, state: &[f64]) -> f64 {
+fn beyond(joint: &Between<Joint>, limits: Limits, state: &[f64]) -> f64 {
     let [from, to] = limits.ends;
-    let (middle, half, [angle, shift]) = ((from + to) * 0.5, (to - from) * 0.5, coordinates(joint, stepper, state));
+    let (middle, half, [angle, shift]) = ((from + to) * 0.5, (to - from) * 0.5, coordinates(joint, state));
     // Both are smooth at the middle, and the cosine at a whole turn, unlike the angle.
     if joint.of.kind.turns_about_axis() {
         half.cos() - (angle - middle).cos()
@@ -51,10 +48,10 @@ fn beyond(joint: &Between<Joint>, limits: Limits, stepper: &MultibodyStepper, st
     }
 }
 
-/// The bodies at this moment, with the numbers of all columns; forces and torques of joints, for which a step is made, are
-/// computed on request.
-fn sample(system: &System, stepper: &MultibodyStepper, now: &Moment<'_, AnyStepper>, has_reactions: bool) -> Sample {
-    let mut sample = bodies_at(stepper, now);
+/// The bodies at this moment, with the numbers of all columns; forces and torques of joints, for which a step is made, only
+/// where they are asked for.
+fn sample(system: &System, now: &Moment<'_, AnyStepper>) -> Sample {
+    let mut sample = bodies_at(system.bodies.len(), now);
     let Sample { bodies, energy, momentum, angular_momentum, gap, .. } = &sample;
     let mut numbers: Vec<f64> = Vec::new();
     numbers.extend(bodies.iter().flat_map(|body| &body.position));
@@ -64,22 +61,19 @@ fn sample(system: &System, stepper: &MultibodyStepper, now: &Moment<'_, AnyStepp
     numbers.push(*energy);
     numbers.extend(momentum.iter().chain(angular_momentum));
     numbers.push(*gap);
-    let coordinates: Vec<_> = system
-        .joints
-        .iter()
-        .map(|joint| (joint.of.kind, joint.of.sign, coordinates(joint, stepper, now.numbers())))
-        .collect();
+    let coordinates: Vec<_> =
+        system.joints.iter().map(|joint| (joint.of.kind, joint.of.sign, coordinates(joint, now.numbers()))).collect();
     let turning = coordinates.iter().filter(|(kind, ..)| kind.turns_about_axis());
     numbers.extend(turning.map(|(_, sign, [angle, _])| sign * angle));
     let shifting = coordinates.iter().filter(|(kind, ..)| kind.shifts_along_axis());
     numbers.extend(shifting.map(|(_, sign, [_, shift])| sign * shift));
-    if has_reactions {
+    if system.has_reactions {
         let none = || vec![[Vector3::repeat(f64::NAN); 2]; system.joints.len()];
-        let forces = stepper.joint_forces(now.numbers()).unwrap_or_else(|_| none());
+        let forces = now.integrator().joint_forces(now).unwrap_or_else(|_| none());
         numbers.extend(forces.iter().flat_map(|[force, _]| force));
         for (joint, [force, torque]) in system.joints.iter().zip(&forces) {
             // About the joint's point, which the bodies share in most kinds.
-            let arm = pose(stepper, now.numbers(), joint.bodies[1]).0 * joint.of.at[1];
+            let arm = pose(joint.bodies[1], now.numbers()).0 * joint.of.at[1];
             numbers.extend(&(torque - arm.cross(force)));
         }
     }
@@ -89,20 +83,21 @@ fn sample(system: &System, stepper: &MultibodyStepper, now: &Moment<'_, AnyStepp
 }
 
 /// The state of the bodies at this moment.
-fn bodies_at(stepper: &MultibodyStepper, now: &Moment<'_, AnyStepper>) -> Sample {
+fn bodies_at(bodies: usize, now: &Moment<'_, AnyStepper>) -> Sample {
     let (momenta, velocities) = (now.momentum(), now.velocity());
     let (mut momentum, mut angular_momentum) = (Vector3::zeros(), Vector3::zeros());
     let body = |body: usize| {
-        let (attitude, place) = stepper.attitude(now.numbers(), body);
+        let (attitude, position) = pose(Some(body), now.numbers());
+        let attitude = SO3::from_matrix_unchecked(attitude);
         let three = |of: &[f64], first: usize| Vector3::from_column_slice(&of[6 * body + first..][..3]);
-        let (position, turning, linear) = (place.translation(), three(momenta, 0), three(momenta, 3));
+        let (turning, linear) = (three(momenta, 0), three(momenta, 3));
         momentum += linear;
         angular_momentum += attitude.as_matrix() * turning + position.cross(&linear);
         let body = BodySample::turning(attitude, three(&velocities, 0), turning);
         BodySample { position, moving: three(&velocities, 3), ..body }
     };
-    let bodies = (0..stepper.bodies()).map(body).collect();
-    let (energy, gap) = (now.energy(), stepper.widest_gap(now.numbers()));
+    let bodies = (0..bodies).map(body).collect();
+    let (energy, gap) = (now.energy(), now.integrator().gap(now));
     let (numbers, quaternions) = (Vec::new(), [].into());
     Sample { time: now.time(), bodies, numbers, quaternions, energy, momentum, angular_momentum, gap }
 }
@@ -118,109 +113,101 @@ fn left_out_of(one: &Redundancy) -> String {
     format!("{functions} implied by the other joints, and left out; the motion is the same")
 }
 
-impl System {
-    /// Simulates the system.
-    ///
-    /// # Errors
-    ///
-    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the system can't be started or a step fails.
-    pub fn run(&self) -> Result<Run, Mistake> {
-        self.run_with(&mut |_| (), None)
-    }
-
-    /// Simulates the system, see [`SceneFile::run_with`](crate::SceneFile::run_with).
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`run`](Self::run), and one of the kind [`Table`](crate::Kind::Table) where a row can't be
-    /// written.
-    pub fn run_with<'a>(
-        &self,
-        progress: &'a mut dyn FnMut(f64),
-        table: Option<&'a mut dyn Sink>,
-    ) -> Result<Run, Mistake> {
-        self.simulate(u64::from(self.steps), Listeners { progress, table }).map_err(|stop| self.mistake(stop))
-    }
-
-    /// Simulates the system up to a number of steps.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`run`](Self::run).
-    pub fn first(&self, most: u32) -> Result<Run, Mistake> {
-        let first = self.simulate(u64::from(most.min(self.steps)), Listeners { progress: &mut |_| (), table: None });
-        first.map_err(|stop| self.mistake(stop))
-    }
-
-    /// The stepper of the system, with its initial state.
-    ///
-    /// # Errors
-    ///
-    /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the system can't be started.
-    pub fn stepper(&self) -> Result<MemberStart, Mistake> {
-        let start = || {
-            let (stepper, _) = self.multibody().map_err(Stop::Setup)?;
-            let state = self.start(&stepper).map_err(Stop::Start)?;
-            let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
-            self.check_springs(&places)?;
-            let any = AnyStepper::new(stepper);
-            let state = any.state_of(&state).ok_or_else(|| Stop::Other("a state of another system".to_owned()))?;
-            Ok((any, state))
-        };
-        start().map_err(|stop| self.mistake(stop))
-    }
-
-    pub(crate) fn simulate(&self, steps: u64, listeners: Listeners<'_>) -> Result<Run, Stop> {
-        let (stepper, left_out) = self.multibody().map_err(Stop::Setup)?;
+impl Moving for System {
+    fn begun(&self, step: f64) -> Result<Begun, Stop> {
+        let (stepper, left_out) = self.multibody(self.run.method, step).map_err(Stop::Setup)?;
         let state = self.start(&stepper).map_err(Stop::Start)?;
         let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
-        let of_springs = self.check_springs(&places)?;
-        let any = AnyStepper::new(stepper.clone());
+        let of_springs = self.check_springs(&places, self.run.given_step().map(|_| step))?;
+        let any = AnyStepper::new(stepper);
         let state = any.state_of(&state).ok_or_else(|| Stop::Other("a state of another system".to_owned()))?;
-        let (stride, columns) = (self.output.stride(steps), self.columns.as_slice());
-        let course = Course { steps, end: f64::INFINITY, stride, columns, listed: self.columns() };
-        let has_reactions = self.has_reactions();
-        let sample = |now: &Moment<'_, AnyStepper>| sample(self, &stepper, now, has_reactions);
-        let mut run = make(&any, state, course, sample, self.watches(&stepper), listeners)?;
-        if let Some(sample) = run.samples().iter().find(|sample| !sample.energy.is_finite()) {
-            let time = short(sample.time);
-            return Err(Stop::Other(format!("the energy is beyond all numbers at t = {time} s; give smaller ones")));
-        }
         let of_springs = of_springs.map(|(spring, why)| (self.places.springs[spring], why));
         let left_out = left_out.into_iter().map(|one| (self.of_joint(one.joint), left_out_of(&one)));
-        let notes = left_out.chain(of_springs).chain(self.fast_turns());
-        run.notes = notes.map(|(place, why)| Mistake::of_run(&self.path, place, why)).collect();
-        Ok(run)
+        Ok(Begun { start: (any, state), notes: left_out.chain(of_springs).chain(self.fast_turns()).collect() })
     }
 
-    /// The events that a run detects: those of the file, and each joint's passing of its limits.
-    fn watches(&self, stepper: &MultibodyStepper) -> Vec<(recording::Event, EventFunction<AnyStepper>)> {
-        let (system, has_reactions) = (Arc::new(self.clone()), self.has_reactions());
-        let of_file = self.event.iter().map(|event| -> (_, EventFunction<_>) {
-            let (quantity, system, stepper) = (event.quantity, Arc::clone(&system), stepper.clone());
-            let function = move |now: &Moment<'_, AnyStepper>| {
-                of_any(quantity, now, || sample(&system, &stepper, now, has_reactions))
-            };
-            (ended(kind(event), event.stops), Box::new(function))
-        });
-        let of_joints = self.limited().map(|(number, limits)| -> (_, EventFunction<_>) {
-            let (joint, stepper) = (self.joints[number], stepper.clone());
-            let function = move |now: &Moment<'_, AnyStepper>| beyond(&joint, limits, &stepper, now.numbers());
-            (ended(recording::Event::rising(), limits.stops), Box::new(function))
+    fn searched(&self, accuracy: Accuracy) -> Result<Choice, Stop> {
+        // Attitudes and velocities at the start don't depend on the step.
+        let (stepper, _) = self.multibody(Scheme::Step, accuracy.horizon / 1024.0).map_err(Stop::Setup)?;
+        let state = self.start(&stepper).map_err(Stop::Start)?;
+        let (layout, attitude) = (stepper.layout(), &state[stepper.layout().attitude()]);
+        let mut velocity = vec![0.0; layout.components()];
+        Propagator::velocity(&stepper, &state, &mut velocity);
+        let candidate = |scheme| {
+            let system = self.clone();
+            let make = move |h| Ok(AnyStepper::new(system.multibody(scheme, h)?.0));
+            Candidate { scheme, make: Box::new(make) }
+        };
+        // A point mass has no step back, either.
+        let has_steps_back = self.joint_with_friction().is_none() && self.bodies.iter().all(|body| body.J.is_some());
+        let candidates: Vec<_> = of_any_group(has_steps_back).map(candidate).collect();
+        let beside = displaced(attitude);
+        let chosen = choose(&candidates, accuracy, [attitude, &beside], &velocity);
+        chosen.map(|(_, choice)| choice).map_err(Stop::Accuracy)
+    }
+
+    fn sample(&self, now: &Moment<'_, AnyStepper>) -> Sample {
+        sample(self, now)
+    }
+
+    fn sampler(&self) -> Sampler {
+        let system = self.clone();
+        Arc::new(move |now: &Moment<'_, AnyStepper>| sample(&system, now))
+    }
+
+    fn watches(&self) -> Vec<Watch> {
+        let sampler = self.sampler();
+        let of_file = self.event.iter().map(|event| watch(event, Vector3::z(), &sampler));
+        let of_joints = self.limited().map(|(number, limits)| {
+            let joint = self.joints[number];
+            let function = move |now: &Moment<'_, AnyStepper>| beyond(&joint, limits, now.numbers());
+            Watch { event: recording::Event::rising(), function: Box::new(function), stops: limits.stops }
         });
         of_file.chain(of_joints).collect()
     }
 
-    /// Notes about bodies that turn too far in a step of (3.13).
-    fn fast_turns(&self) -> impl Iterator<Item = Note> {
-        let rigid = self.bodies.iter().zip(&self.places.bodies).filter(|(body, _)| body.kinetic == Kinetic::Rigid);
-        rigid.filter_map(|(body, place)| Some((*place, fast_turn(self.step * body.start.velocity.norm())?)))
+    fn mistake(&self, stop: Stop) -> Mistake {
+        let (place, message) = match stop {
+            Stop::Table(message) => return Mistake::of_table(&self.path, message),
+            Stop::Setup(error) | Stop::Start(error) => self.obstacle(error),
+            Stop::Step { time, cause } => {
+                let (place, why) = self.end_of_steps(&cause);
+                (place, format!("stopped at t = {} s: {why}", short(time)))
+            }
+            stop @ Stop::Accuracy(_) => (self.places.pace, format!("{stop}{}", self.run.advice())),
+            Stop::Spring(spring, why) => (self.places.springs[spring], why),
+            stop => (self.places.pace, stop.to_string()),
+        };
+        Mistake::of_run(&self.path, place, message)
     }
 
-    /// Differences between the nearest start and the file, a line for each body that has one.
-    #[must_use]
-    pub fn changes(&self, run: &Run) -> String {
-        let Some(start) = run.samples().first().filter(|_| self.nearest) else { return String::new() };
+    fn order(&self) -> u32 {
+        self.run.method.order()
+    }
+
+    fn errors(&self) -> Vec<Column> {
+        let mut all = self.all_columns();
+        all.retain(|column| column.key() == "energy-error");
+        all
+    }
+
+    fn fault(&self, run: &Run) -> Option<Stop> {
+        let sample = run.samples().iter().find(|sample| !sample.energy.is_finite())?;
+        let time = short(sample.time);
+        Some(Stop::Other(format!("the energy is beyond all numbers at t = {time} s; give smaller ones")))
+    }
+
+    fn ends_in_words(&self, run: &Run, _ends: [&Sample; 2]) -> String {
+        if self.joints.is_empty() {
+            return String::new();
+        }
+        let widest = run.samples().iter().map(|sample| sample.gap).fold(0.0, f64::max);
+        let unit = if self.has_cosines() { "(m and cosines)" } else { "m" };
+        format!(", joints open by {widest:.1e} {unit} at most")
+    }
+
+    fn changes(&self, run: &Run) -> String {
+        let Some(start) = run.samples().first().filter(|_| self.run.nearest) else { return String::new() };
         let line = |(given, now): (&SystemBody, &BodySample)| {
             let turned = SO3::from(given.start.attitude).as_matrix() - now.attitude.as_matrix();
             let turned = 2.0 * (turned.norm() / 8.0_f64.sqrt()).min(1.0).asin();
@@ -238,29 +225,30 @@ impl System {
         };
         self.bodies.iter().zip(&start.bodies).filter_map(line).collect()
     }
+}
 
-    /// Lines about the start and the end of a run.
-    #[must_use]
-    pub fn summary(&self, run: &Run) -> String {
-        let events = run.events_in_words(self.events());
-        let ends = run.summary(&self.title, &self.sum(), "J", |_, _| {
-            if self.joints.is_empty() {
-                return events;
-            }
-            let widest = run.samples().iter().map(|sample| sample.gap).fold(0.0, f64::max);
-            let unit = if self.has_cosines() { "(m and cosines)" } else { "m" };
-            format!(", joints open by {widest:.1e} {unit} at most{events}")
-        });
-        ends + &self.changes(run)
+/// An attitude beside another, by some roundings of turns and of the largest coordinate.
+fn displaced(attitude: &[f64]) -> Vec<f64> {
+    let mut beside = attitude.to_vec();
+    let coordinate = |row: usize| 9 + 4 * row + 3;
+    let bodies = || attitude.chunks(ENTRIES);
+    let size = bodies().flat_map(|body| (0..3).map(|row| body[coordinate(row)].abs())).fold(0.0, f64::max);
+    let by = displacement(6);
+    for body in beside.chunks_mut(ENTRIES) {
+        let turn = SO3::exp(Vector3::from_column_slice(&by[..3]));
+        let turned = Matrix3::from_row_slice(&body[..9]) * turn.as_matrix();
+        body[..9].copy_from_slice(turned.transpose().as_slice());
+        (0..3).for_each(|row| body[coordinate(row)] += by[3 + row] * size);
     }
+    beside
+}
 
-    /// The events of a run as comma-separated values, see [`SceneFile::event_table`](crate::SceneFile::event_table).
-    ///
-    /// # Errors
-    ///
-    /// None, as it is written to memory.
-    pub fn event_table(&self, run: &Run) -> Result<String, Box<dyn Error + Send + Sync>> {
-        run.event_table(&self.columns, self.events())
+impl System {
+    /// Notes about bodies that turn too far in a step of (3.13).
+    fn fast_turns(&self) -> impl Iterator<Item = Note> {
+        let step = self.run.step().unwrap_or_default();
+        let rigid = self.bodies.iter().zip(&self.places.bodies).filter(|(body, _)| body.kinetic == Kinetic::Rigid);
+        rigid.filter_map(move |(body, place)| Some((*place, fast_turn(step * body.start.velocity.norm())?)))
     }
 
     /// The place in the file of the joint with this number.
@@ -268,26 +256,11 @@ impl System {
         self.places.joints.get(joint).copied().unwrap_or(self.places.pace)
     }
 
-    /// The mistake for a failed run, with its place in the file.
-    fn mistake(&self, stop: Stop) -> Mistake {
-        let (place, message) = match stop {
-            Stop::Table(message) => return Mistake::of_table(&self.path, message),
-            Stop::Setup(error) | Stop::Start(error) => self.obstacle(error),
-            Stop::Step { time, cause } => {
-                let (place, why) = self.end_of_steps(&cause);
-                (place, format!("stopped at t = {} s: {why}", short(time)))
-            }
-            Stop::Spring(spring, why) => (self.places.springs[spring], why),
-            stop => (self.places.pace, stop.to_string()),
-        };
-        Mistake::of_run(&self.path, place, message)
-    }
-
     /// The reason why the system can't be started, with the place of the body or the joint.
     fn obstacle(&self, error: SetupError) -> ((usize, usize), String) {
         match error {
             SetupError::OffConstraint { joint, by } => {
-                let message = if self.nearest {
+                let message = if self.run.nearest {
                     format!(
                         "no places next to these were found where the joints are closed: this one stays open by {by:e} ({GAP}); give places nearer to such, or other joints"
                     )
@@ -299,7 +272,7 @@ impl System {
                 (self.of_joint(joint), message)
             }
             SetupError::OffVelocity { joint, by } => {
-                let message = if self.nearest {
+                let message = if self.run.nearest {
                     format!(
                         "no velocities next to these were found that keep this joint closed: they open it by {by:e} ({GAP}, per second); give others"
                     )

@@ -8,6 +8,7 @@ use liestep_late::{Declaration, LateError};
 use crate::file::body::{Distribution, Kinetic};
 use crate::file::effects::EFFECTS;
 use crate::file::joint::{Joint, Kind};
+use crate::file::kinds::{Content, Scene, of_parts};
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::bodies::{Coil, Cord, HeavyBody};
@@ -91,22 +92,35 @@ pub fn written(name: &str, form: Form) -> Option<Result<String, LateError>> {
     Some(Declaration::parse(declaration(name)?).and_then(|declaration| form.of(declaration)))
 }
 
-impl SceneFile {
-    /// The derivations of the scene's terms.
+impl Scene {
+    /// The derivations of the scene's terms, and of several bodies the constraints of their joints.
     #[must_use]
     pub fn derivation(&self) -> String {
+        of_parts!(self, parts => parts.derivation())
+    }
+
+    /// The derivation of the sum of all terms, in this form. In C it is followed by the scene's numbers, if its steps are equal
+    /// and its numbers constant. None of several bodies.
+    ///
+    /// # Errors
+    ///
+    /// The sum can't be written in this form, see [`LateError::Step`].
+    #[must_use]
+    pub fn written(&self, form: Form) -> Option<Result<String, LateError>> {
+        if let Content::Body(file) = &self.content { Some(file.written(form)) } else { None }
+    }
+}
+
+impl SceneFile {
+    /// The derivations of the scene's terms.
+    fn derivation(&self) -> String {
         let listed = self.terms().filter_map(|name| derivation(&name).map(|text| format!("{name}\n\n{text}")));
         let own = self.own().map(|one| one.declaration.derivation.clone());
         listed.chain(own).collect::<Vec<_>>().join("\n")
     }
 
-    /// The derivation of the sum of all terms, in this form. In C it is followed by the scene's numbers, if its steps are equal
-    /// and its numbers constant.
-    ///
-    /// # Errors
-    ///
-    /// The sum can't be written in this form, see [`LateError::Step`].
-    pub fn written(&self, form: Form) -> Result<String, LateError> {
+    /// The derivation of the sum of all terms, in this form.
+    fn written(&self, form: Form) -> Result<String, LateError> {
         let listed = self.terms().filter_map(|name| declaration(&name)).map(Declaration::parse);
         let own = self.own().map(|one| Ok(one.declaration));
         let sum = Declaration::sum(&listed.chain(own).collect::<Result<Vec<_>, _>>()?)?;
@@ -161,8 +175,7 @@ fn constraints(kind: Kind) -> &'static str {
 
 impl System {
     /// The derivation of a body, the terms of springs and of joints, and the constraints of joints.
-    #[must_use]
-    pub fn derivation(&self) -> String {
+    fn derivation(&self) -> String {
         let gravity = if self.gravity.is_some() { "" } else { "without gravity, g = 0\n" };
         let has = |is_long: bool| self.springs.iter().any(|spring| (spring.of.length != 0.0) == is_long);
         let springs = if has(true) { Coil::DERIVATION } else { "" };

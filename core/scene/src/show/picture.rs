@@ -9,7 +9,9 @@ use liestep_plot::{
 };
 use nalgebra::Vector3;
 
+use crate::file::common::Parts as _;
 use crate::file::group::Group;
+use crate::file::kinds::{Scene, of_parts};
 use crate::file::picture::{Curve, Plane, SpherePicture, Trace};
 use crate::file::sample::Sample;
 use crate::file::scene::SceneFile;
@@ -19,39 +21,40 @@ use crate::run::make::Run;
 /// Colours of bodies and of a vector's components, which further ones repeat.
 const BODY_COLOURS: [Colour; 8] = [BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILION, INK, YELLOW];
 
-impl SceneFile {
-    /// The picture of a run as SVG.
+impl Scene {
+    /// The picture of a run as SVG: of several bodies the paths of their centres of mass, the angle of each body's turn since the
+    /// start, and the change of the energy.
     ///
     /// # Errors
     ///
     /// Only errors of the drawing library, for an impossible layout.
     pub fn picture(&self, run: &Run) -> PlotResult<String> {
-        let (picture, samples) = (&self.picture, run.samples());
         // A step that was chosen for an accuracy has more digits than are useful.
         let step = format!("{:.4e}", run.step()).parse().unwrap_or(run.step());
-        let subtitle = format!("{}, h = {step} s{}", self.sum(), run.average);
+        let subtitle = format!("{}, h = {step} s{}", of_parts!(self, parts => parts.sum()), run.average);
+        of_parts!(self, parts => parts.drawn(run, &subtitle))
+    }
+}
+
+impl SceneFile {
+    fn drawn(&self, run: &Run, subtitle: &str) -> PlotResult<String> {
+        let (picture, samples) = (&self.picture, run.samples());
         let curve = |curve: &Curve, area: &Area<'_>| curve.draw(area, samples, (&self.group, &picture.axis.0));
         if !self.group.is_rotation() {
             return render((1200, 640), |area| {
                 let (header, body) = area.split_vertically(px(64));
-                heading(&header, &self.title, &subtitle)?;
+                heading(&header, &self.title, subtitle)?;
                 let places = body.split_evenly((picture.panels.len().max(1), 1));
                 places.iter().zip(&picture.panels).try_for_each(|(place, panel)| curve(panel, place))
             });
         }
         let path = |area: &Area<'_>| picture.draw_path(area, samples);
-        draw((&self.title, &subtitle), &[], path, &picture.panels, curve)
+        draw((&self.title, subtitle), &[], path, &picture.panels, curve)
     }
 }
 
 impl System {
-    /// The picture of a run as SVG: the paths of the centres of mass, the angle of each body's turn since the start,
-    /// and the change of the energy.
-    ///
-    /// # Errors
-    ///
-    /// Only errors of the drawing library, for an impossible layout.
-    pub fn picture(&self, run: &Run) -> PlotResult<String> {
+    fn drawn(&self, run: &Run, subtitle: &str) -> PlotResult<String> {
         let samples = run.samples();
         let Some(start) = samples.first() else { return Err("a run has a state".into()) };
         let ([across, up], axes) = match self.picture.plane.unwrap_or_else(|| plane_of(samples)) {
@@ -82,8 +85,7 @@ impl System {
         let energy = over_time("Energy: how far from its start", "J", Vertical::Logarithmic, samples, &|sample| {
             (sample.energy - start.energy).abs()
         });
-        let subtitle = format!("{}, h = {} s", self.sum(), self.step);
-        draw((&self.title, &subtitle), &names, path, &[turns, energy], Panel::draw)
+        draw((&self.title, subtitle), &names, path, &[turns, energy], Panel::draw)
     }
 }
 

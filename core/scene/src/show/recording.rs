@@ -6,6 +6,8 @@ use std::path::Path;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::file::column::Column;
+use crate::file::common::Parts as _;
+use crate::file::kinds::{Content, Scene, of_parts};
 use crate::file::mistake::Mistake;
 use crate::file::quantity::short;
 use crate::file::sample::{BodySample, Sample};
@@ -155,14 +157,14 @@ impl Recording {
         };
         let figure = Figure::of(&scene.inertia().unwrap_or_else(Matrix3::identity), arm);
         Self {
-            title: scene.title.clone(),
-            about: format!("{}, {} steps of {} s{}", scene.sum(), run.steps(), short(run.step()), run.average),
+            title: String::new(),
+            about: String::new(),
             axis,
             bodies: if attitudes.is_empty() { Vec::new() } else { vec![single(figure, attitudes)] },
             rods: Vec::new(),
             times: collect(&|sample| sample.time),
             charts,
-            events: named_events(run, scene.events()),
+            events: Vec::new(),
             model: Model::of(scene)
                 .ok()
                 .filter(|_| scene.group.is_rotation() && !scene.event.iter().any(|one| one.stops)),
@@ -183,16 +185,15 @@ impl Recording {
         });
         let rod = |body: Option<usize>, at: Vector3<f64>| Some((body?, at)).filter(|(_, at)| at.norm() > 0.0);
         let rods = system.joints.iter().flat_map(|joint| [0, 1].map(|side| rod(joint.bodies[side], joint.of.at[side])));
-        let (title, about) = (system.title.clone(), system.about_run(run));
         Self {
-            title,
-            about,
+            title: String::new(),
+            about: String::new(),
             axis: Vector3::z(),
             bodies: bodies.collect(),
             rods: rods.flatten().collect(),
             times: samples.iter().map(|sample| sample.time).collect(),
             charts: charts_of_system(system, samples),
-            events: named_events(run, system.events()),
+            events: Vec::new(),
             model: None,
         }
     }
@@ -204,19 +205,6 @@ impl Recording {
     pub fn page(&self) -> String {
         let Self { title, about, axis, bodies, rods, times, charts, events, model } = self;
         Page { title, about, axis, bodies, rods, times, charts, events, model: model.as_ref() }.to_string()
-    }
-}
-
-impl System {
-    /// The page of a run of this system, see [`Recording::page`].
-    #[must_use]
-    pub fn page(&self, run: &Run) -> String {
-        Recording::of_system(self, run).page()
-    }
-
-    /// The parts and the steps of a run, in words.
-    fn about_run(&self, run: &Run) -> String {
-        format!("{}, {} steps of {} s", self.sum(), run.steps(), short(run.step()))
     }
 }
 
@@ -269,11 +257,18 @@ fn attitude(body: &BodySample) -> UnitQuaternion<f64> {
     UnitQuaternion::new_normalize(Quaternion::new(w, x, y, z))
 }
 
-impl SceneFile {
+impl Scene {
     /// The page of a run of this scene, see [`Recording::page`].
     #[must_use]
     pub fn page(&self, run: &Run) -> String {
-        Recording::of(self, run).page()
+        let recording = match &self.content {
+            Content::Body(file) => Recording::of(file, run),
+            Content::System(system) => Recording::of_system(system, run),
+        };
+        let sum = of_parts!(self, parts => parts.sum());
+        let about = format!("{sum}, {} steps of {} s{}", run.steps(), short(run.step()), run.average);
+        let events = named_events(run, self.events());
+        Recording { title: self.title().to_owned(), about, events, ..recording }.page()
     }
 }
 

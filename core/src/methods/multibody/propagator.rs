@@ -3,14 +3,17 @@
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
-use nalgebra::Vector6;
+use nalgebra::{Vector3, Vector6};
 
 use super::state::body_of;
 use super::stepper::{MultibodyStepper, check_length};
 use super::workspace::with_workspace;
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup as _;
-use crate::motion::{Layout, Propagator, StepReport};
+use crate::motion::{Cost, Layout, Propagator, StepReport};
+
+/// The operations of a body in a stage of a step, and in an iteration: products and factors of matrices of order six.
+const OF_A_BODY: [f64; 2] = [2e3, 4e3];
 
 impl MultibodyStepper {
     /// Makes `steps` steps; on an error the state is unchanged. Returns the sum of their iterations.
@@ -103,6 +106,21 @@ impl Propagator for MultibodyStepper {
         adopted[..known].copy_from_slice(&state[..known]);
         self.begin(&mut adopted);
         adopted.into()
+    }
+
+    #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)] // counts of bodies and of stages
+    fn cost(&self) -> Option<Cost> {
+        let stages = self.stages.as_ref().map_or(1, |stages| stages.gammas().count());
+        let [step, iteration] = OF_A_BODY.map(|of_a_body| of_a_body * self.bodies() as f64);
+        Some(Cost { step: stages as f64 * step, iteration, fewest: 2 * stages as u32, once: 0.0 })
+    }
+
+    fn gap(&self, state: &[f64]) -> f64 {
+        self.widest_gap(state)
+    }
+
+    fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+        Self::joint_forces(self, state)
     }
 
     fn step_size(&self) -> f64 {

@@ -9,9 +9,11 @@ mod variables;
 
 use liestep_late::{c, prefix};
 
+use crate::file::kinds::{Content, Scene, of_parts};
 use crate::file::mistake::Mistake;
-use crate::file::scene::{Origin, SceneFile};
+use crate::run::make::Stop;
 use crate::run::model::Model;
+use crate::run::moving::Moving as _;
 
 pub use archive::archive;
 
@@ -41,23 +43,26 @@ pub struct Fmu {
 const UNIT: &str = include_str!("unit.c");
 const FUNCTIONS: [&str; 2] = [include_str!("fmi2.c"), include_str!("fmi3.c")];
 
-impl SceneFile {
+impl Scene {
     /// The scene as a unit for co-simulation: the step with its numbers as parameters, a torque as an input, and the start; a
     /// communication step is a whole number of steps. Rows have the bits of [`run`](Self::run).
     ///
     /// # Errors
     ///
     /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the scene's step isn't one of equal steps by constant
-    /// numbers.
+    /// numbers, and for several bodies.
     pub fn fmu(&self, name: &str, fmi: Fmi) -> Result<Fmu, Mistake> {
-        let Origin { path, places } = &self.origin;
-        let wrong = |why: String| Mistake::of_run(path, places.pace, format!("the scene is no unit: {why}"));
-        let model = Model::of(self).map_err(wrong)?;
+        let wrong =
+            |why: String| of_parts!(self, parts => parts.mistake(Stop::Other(format!("the scene is no unit: {why}"))));
+        let Content::Body(file) = &self.content else {
+            return Err(wrong("it has several bodies, and a unit has one so far".to_owned()));
+        };
+        let model = Model::of(file).map_err(wrong)?;
         let name = identifier(name);
         let step = c(model.declaration).map_err(|error| wrong(error.to_string()))?;
         let token = format!("liestep-{name}-{:016x}", digest(&step));
-        let variables = variables::variables(&model, self.group.unit_of_energy());
-        let described = description::description(&model, (&name, &self.title, &token), &variables, fmi);
+        let variables = variables::variables(&model, file.group.unit_of_energy());
+        let described = description::description(&model, (&name, self.title(), &token), &variables, fmi);
         let source = step + &unit(&model, &variables, &token, fmi);
         let mut files = vec![
             ("modelDescription.xml".to_owned(), described.into_bytes()),
