@@ -31,13 +31,18 @@
 //!
 //! for all neighbours `m` and `n` of `c`. Between neighbours in a tree only their own blocks are filled.
 //!
+//! A body on a ball joint that no term couples has a `Ball`, in which blocks of three do all this.
+//!
 //! Matrices have room for six functions; the loops over those that a joint has are compiled for each number of them.
 
 use nalgebra::{Matrix6, SMatrix, Vector2, Vector6};
 
+use super::ball::{add_blocks, joined};
+use super::ends::Ends;
 use super::graph::Tree;
-use super::nodes::{Block, Ends, Loop, Node, Unknowns, add};
-use crate::numbers::{Coordinates as _, Pattern};
+use super::nodes::{Block, Loop, Node, Unknowns, add};
+use super::turning::inverted;
+use crate::numbers::{Coordinates as _, OnRegisters, Pattern, Register, on_registers};
 
 /// Calls a function that is compiled for each number of functions of a joint.
 macro_rules! by_rows {
@@ -58,32 +63,71 @@ pub(super) fn factorise(tree: &Tree, nodes: &mut [Node], loops: &mut [Loop]) {
     for closing in &mut *loops {
         closing.free = free(closing, nodes);
     }
-    for &k in tree.order.iter().rev() {
-        let node = &mut nodes[k];
-        (node.matrix, node.determinant) = Vector6::factorise_apart(&node.matrix, Pattern::WHOLE);
-        for block in node.blocks.iter_mut().filter(|block| block.neighbour.is_coupled) {
-            block.z = solved(&node.matrix, &block.own);
-        }
-        if node.rows > 0 {
-            by_rows!(node.rows, eliminate_joint(node));
-        }
-        // Additions to other nodes; the blocks of this one are complete.
-        let blocks = core::mem::take(&mut node.blocks);
-        for (m, row) in blocks.iter().enumerate() {
-            for column in &blocks {
-                let (node, is_parent) = (&nodes[k], m == 0);
-                let added = match node.rows {
-                    0 => -(row.other * column.z),
-                    rows => by_rows!(rows, complement(node, is_parent, row, column)),
-                };
-                add(nodes, [row.neighbour.body, column.neighbour.body], &added);
-            }
-        }
-        nodes[k].blocks = blocks;
-    }
+    on_registers(Factorisation { tree, nodes });
     if !loops.is_empty() {
         close(tree, nodes, loops);
     }
+}
+
+/// The elimination of all bodies from the ends of the trees.
+struct Factorisation<'a> {
+    tree: &'a Tree,
+    nodes: &'a mut [Node],
+}
+
+#[hot]
+impl OnRegisters for Factorisation<'_> {
+    type Output = ();
+
+    fn run<R: Register>(self, zero: R) {
+        let Self { tree, nodes } = self;
+        for &k in tree.order.iter().rev() {
+            let node = &mut nodes[k];
+            let Some(ball) = &mut node.ball else {
+                eliminate(nodes, k);
+                continue;
+            };
+            node.determinant = ball.factorise(zero);
+            if let Some(turning) = &ball.turning {
+                (node.pivot, node.of_joint) = (turning.pivot, turning.determinant);
+            }
+            if let Some(parent) = tree.members[k].parent
+                && let Ok([node, parent]) = nodes.get_disjoint_mut([k, parent])
+                && let Some(ball) = &node.ball
+            {
+                let added = ball.of_parent(zero);
+                match &mut parent.ball {
+                    Some(ball) => ball.add(zero, added),
+                    None => add_blocks(&mut parent.matrix, added),
+                }
+            }
+        }
+    }
+}
+
+/// Eliminates a body, and then its joint, of any functions and with any neighbours.
+fn eliminate(nodes: &mut [Node], k: usize) {
+    let node = &mut nodes[k];
+    (node.matrix, node.determinant) = Vector6::factorise_apart(&node.matrix, Pattern::WHOLE);
+    for block in node.blocks.iter_mut().filter(|block| block.neighbour.is_coupled) {
+        block.z = solved(&node.matrix, &block.own);
+    }
+    if node.rows > 0 {
+        by_rows!(node.rows, eliminate_joint(node));
+    }
+    // Additions to other nodes; the blocks of this one are complete.
+    let blocks = core::mem::take(&mut node.blocks);
+    for (m, row) in blocks.iter().enumerate() {
+        for column in &blocks {
+            let (node, is_parent) = (&nodes[k], m == 0);
+            let added = match node.rows {
+                0 => -(row.other * column.z),
+                rows => by_rows!(rows, complement(node, is_parent, row, column)),
+            };
+            add(nodes, [row.neighbour.body, column.neighbour.body], &added);
+        }
+    }
+    nodes[k].blocks = blocks;
 }
 
 /// The solutions for all columns of the right-hand side.
@@ -98,7 +142,7 @@ fn solved<const K: usize>(factors: &Matrix6<f64>, right: &SMatrix<f64, 6, K>) ->
 
 /// Eliminates a body's joint.
 fn eliminate_joint<const K: usize>(node: &mut Node) {
-    let [own, of_parent] = &node.ends;
+    let [own, of_parent] = &*node.ends;
     let x = solved(&node.matrix, &own.before.fixed_columns::<K>(0).into_owned());
     let after = own.after.fixed_columns::<K>(0);
     let s: SMatrix<f64, K, K> = after.tr_mul(&x);
@@ -233,30 +277,70 @@ fn substitute(
     of_bodies: &mut [Vector6<f64>],
     of_joints: &mut [Vector6<f64>],
 ) -> Vector2<f64> {
-    let mut size = Vector2::zeros();
-    for &k in tree.order.iter().rev() {
-        let node = &nodes[k];
-        let w = Vector6::solve_apart(&node.matrix, Pattern::WHOLE, &of_bodies[k]);
-        of_bodies[k] = w;
-        size += Vector2::new(w.fixed_rows::<3>(0).norm_squared(), w.fixed_rows::<3>(3).norm_squared());
-        if node.rows > 0 {
-            by_rows!(node.rows, outwards(node, &w, &mut of_joints[k], of_bodies));
-        } else {
-            add_changes(node, &w, of_bodies);
+    on_registers(Substitution { tree, nodes, of_bodies, of_joints })
+}
+
+/// The substitution of right-hand sides in the factors of the trees.
+struct Substitution<'a> {
+    tree: &'a Tree,
+    nodes: &'a [Node],
+    of_bodies: &'a mut [Vector6<f64>],
+    of_joints: &'a mut [Vector6<f64>],
+}
+
+#[hot]
+impl OnRegisters for Substitution<'_> {
+    type Output = Vector2<f64>;
+
+    fn run<R: Register>(self, zero: R) -> Vector2<f64> {
+        let Self { tree, nodes, of_bodies, of_joints } = self;
+        let mut size = Vector2::zeros();
+        for &k in tree.order.iter().rev() {
+            let Some(ball) = &nodes[k].ball else {
+                size += reduce(&nodes[k], k, of_bodies, of_joints);
+                continue;
+            };
+            let ([turn, shift], opposed) = ball.inwards(zero, &mut of_bodies[k], &mut of_joints[k]);
+            size += opposed;
+            if let Some(parent) = tree.members[k].parent {
+                of_bodies[parent] += joined(turn, shift);
+            }
         }
+        for &k in &tree.order {
+            let Some(ball) = &nodes[k].ball else {
+                complete(&nodes[k], k, of_bodies, of_joints);
+                continue;
+            };
+            let (parent, mut unknowns) = (tree.members[k].parent.map(|parent| &of_bodies[parent]), of_bodies[k]);
+            ball.outwards(zero, parent, &mut unknowns, &mut of_joints[k]);
+            of_bodies[k] = unknowns;
+        }
+        size
     }
-    for &k in &tree.order {
-        let node = &nodes[k];
-        let mut unknowns = -of_bodies[k];
-        for block in node.blocks.iter().filter(|block| block.neighbour.is_coupled) {
-            unknowns -= block.z * of_bodies[block.neighbour.body];
-        }
-        if node.rows > 0 {
-            by_rows!(node.rows, inwards(node, of_bodies, &mut of_joints[k], &mut unknowns));
-        }
-        of_bodies[k] = unknowns;
+}
+
+/// Replaces the right-hand sides of a body and its joint by `w` and `s`; returns the squares of the turn and the shift of `w`.
+fn reduce(node: &Node, k: usize, of_bodies: &mut [Vector6<f64>], of_joints: &mut [Vector6<f64>]) -> Vector2<f64> {
+    let w = Vector6::solve_apart(&node.matrix, Pattern::WHOLE, &of_bodies[k]);
+    of_bodies[k] = w;
+    if node.rows > 0 {
+        by_rows!(node.rows, outwards(node, &w, &mut of_joints[k], of_bodies));
+    } else {
+        add_changes(node, &w, of_bodies);
     }
-    size
+    Vector2::new(w.fixed_rows::<3>(0).norm_squared(), w.fixed_rows::<3>(3).norm_squared())
+}
+
+/// Replaces `w` and `s` by the unknowns of a body and of its joint, by those of its neighbours.
+fn complete(node: &Node, k: usize, of_bodies: &mut [Vector6<f64>], of_joints: &mut [Vector6<f64>]) {
+    let mut unknowns = -of_bodies[k];
+    for block in node.blocks.iter().filter(|block| block.neighbour.is_coupled) {
+        unknowns -= block.z * of_bodies[block.neighbour.body];
+    }
+    if node.rows > 0 {
+        by_rows!(node.rows, inwards(node, of_bodies, &mut of_joints[k], &mut unknowns));
+    }
+    of_bodies[k] = unknowns;
 }
 
 /// Adds the part of a body with `y = −change` to the right-hand sides of its neighbours.
@@ -273,7 +357,7 @@ fn outwards<const K: usize>(
     of_joint: &mut Vector6<f64>,
     of_bodies: &mut [Vector6<f64>],
 ) {
-    let [own, of_parent] = &node.ends;
+    let [own, of_parent] = &*node.ends;
     let right = of_joint.fixed_rows::<K>(0) - own.after.fixed_columns::<K>(0).tr_mul(w);
     let s = node.inverse.fixed_view::<K, K>(0, 0) * right;
     of_joint.fixed_rows_mut::<K>(0).copy_from(&s);
@@ -299,39 +383,4 @@ fn inwards<const K: usize>(
     }
     of_joint.fixed_rows_mut::<K>(0).copy_from(&p);
     *unknowns -= node.x.fixed_columns::<K>(0) * p;
-}
-
-/// The inverse by elimination in the order of the rows, the least pivot relative to `sizes`, and the determinant
-/// relative to their absolute values; a size of zero makes both zero. Rows after the first `rows` hold no functions.
-#[hot]
-fn inverted<const K: usize>(
-    matrix: &SMatrix<f64, K, K>,
-    sizes: &nalgebra::SVector<f64, K>,
-    rows: usize,
-) -> (SMatrix<f64, K, K>, f64, f64) {
-    let (mut a, mut least, mut determinant) = (*matrix, f64::INFINITY, 1.0);
-    for k in 0..rows.min(K) {
-        let pivot = a[(k, k)];
-        // After a pivot that isn't positive, later pivots carry no information.
-        let relative = if sizes[k] == 0.0 { 0.0 } else { pivot / sizes[k] };
-        least = if least > 0.0 && (relative < least || relative.is_nan()) { relative } else { least };
-        determinant *= relative * sizes[k].signum();
-        let inverse = 1.0 / pivot;
-        a[(k, k)] = 1.0;
-        for j in 0..K {
-            a[(k, j)] *= inverse;
-        }
-        for i in 0..K {
-            if i == k {
-                continue;
-            }
-            let factor = a[(i, k)];
-            a[(i, k)] = 0.0;
-            for j in 0..K {
-                let change = factor * a[(k, j)];
-                a[(i, j)] -= change;
-            }
-        }
-    }
-    (a, least, determinant)
 }

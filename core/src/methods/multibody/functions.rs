@@ -3,7 +3,7 @@
 use alloc::sync::Arc;
 use alloc::vec::Vec;
 
-use nalgebra::{Matrix3, Matrix6, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use super::constraint::{Constraint, Place};
 use crate::error::SetupError;
@@ -18,6 +18,12 @@ pub(super) trait Functions: Send + Sync {
     fn rows(&self) -> usize;
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64>;
+
+    /// The points of the body above and of the body below that the first three functions hold together, if the others depend on
+    /// attitudes alone.
+    fn points(&self) -> Option<[Vector3<f64>; 2]> {
+        None
+    }
 
     /// The gap by all functions of a joint some of which aren't imposed, as the other joints imply them; `None` if all are.
     fn gap_of_all(&self, above: &Place, below: &Place) -> Option<Vector6<f64>> {
@@ -46,6 +52,10 @@ impl<C: Constraint<K>, const K: usize> Functions for ConstraintFunctions<C, K> {
 
     fn rows(&self) -> usize {
         self.0.functions().min(K)
+    }
+
+    fn points(&self) -> Option<[Vector3<f64>; 2]> {
+        self.0.points().filter(|_| self.rows() >= 3)
     }
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64> {

@@ -5,6 +5,8 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
+use nalgebra::Vector3;
+
 use super::functions::Functions;
 use crate::error::SetupError;
 
@@ -15,6 +17,16 @@ pub(super) struct Joint {
     /// The body above; `None` is space.
     pub(super) above: Option<usize>,
     pub(super) below: usize,
+    /// The points of both bodies that the first functions hold together, m.
+    pub(super) points: Option<[Vector3<f64>; 2]>,
+    /// The number of functions.
+    pub(super) rows: usize,
+}
+
+impl Joint {
+    pub(super) fn new(functions: Arc<dyn Functions>, above: Option<usize>, below: usize) -> Self {
+        Self { points: functions.points(), rows: functions.rows(), functions, above, below }
+    }
 }
 
 /// A body's connection to its parent.

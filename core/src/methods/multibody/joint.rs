@@ -221,6 +221,12 @@ impl Constraint<6> for Joint {
         self.count
     }
 
+    fn points(&self) -> Option<[Vector3<f64>; 2]> {
+        let [first, second, third, others @ ..] = &self.functions;
+        let are_turns = others.iter().all(|function| matches!(function, Cosine(..) | Nothing));
+        (are_turns && [*first, *second, *third] == COINCIDENCE).then_some(self.points)
+    }
+
     fn validate(&self) -> Result<(), SetupError> {
         self.flaw.map_or(Ok(()), |(field, cause)| Err(SetupError::Parameter { field, cause }))
     }

@@ -19,10 +19,12 @@
 //! The unknowns of Newton's iteration are half the coordinates `y` of `F` and the multipliers. The residual is affine
 //! in the multipliers, so they need no initial guess from the last step.
 
+mod ball;
 mod composed;
 mod constraint;
 mod couplings;
 mod elimination;
+mod ends;
 mod equations;
 mod functions;
 mod graph;
@@ -42,6 +44,7 @@ mod system;
 mod terms;
 #[cfg(test)]
 mod tests;
+mod turning;
 mod workspace;
 
 pub use constraint::{Constraint, Place, Slope};

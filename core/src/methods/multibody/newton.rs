@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use nalgebra::{Vector2, Vector6};
+use nalgebra::{Matrix3, Vector2, Vector3, Vector6};
 
 roots!();
 
@@ -13,7 +13,7 @@ use super::stepper::MultibodyStepper;
 use super::workspace::Workspace;
 use crate::error::StepError;
 use crate::groups::{CayleyRetraction, LieGroup as _, Retraction, SO3};
-use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, has_sufficed, may_suffice};
+use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS};
 
 /// The relative rounding error of an update, by places and by opposed forces.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
@@ -25,6 +25,10 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// `C` times the square of the one before. At this length one that isn't rounding is a quarter of it only for `C`
 /// above two millions, where chains in a close pass have some thousand.
 const ROUNDING: (f64, f64) = (1e-14, 1.0 / 16.0);
+
+/// The longest update of Newton's iteration, relative to the unknowns and as a square, after which its Jacobian is used again: two
+/// further updates by it are shorter by some hundred-thousandths each.
+const NEAR: f64 = 1e-9;
 
 /// The longest distance of a solution from the guess, relative to the unknowns, at which it continues the motion whatever
 /// the sign of the determinant; as a square.
@@ -38,6 +42,14 @@ const CONTINUED: f64 = 1e-6;
 fn squares(of: &Vector6<f64>) -> Vector2<f64> {
     let (turn, shift) = parts(of);
     Vector2::new(turn.norm_squared(), shift.norm_squared())
+}
+
+/// The turn in the axes of space by half the unknown of a body, `½ R T`, with the tangent `T = 2 (I + ŷ)/(1 + |y|²)` of the
+/// Cayley map.
+fn turn_in_space(attitude: &Matrix3<f64>, half: &Vector3<f64>) -> Matrix3<f64> {
+    let [x, y, z] = [0, 1, 2].map(|k| attitude.column(k));
+    let turned = [x + y * half.z - z * half.y, y + z * half.x - x * half.z, z + x * half.y - y * half.x];
+    Matrix3::from_columns(&turned) / (1.0 + half.norm_squared())
 }
 
 /// The momentum equations of a step from the workspace's `now` with its `a`, and the constraints at its end.
@@ -89,8 +101,7 @@ impl<'a> Problem<'a> {
         let (stepper, work) = (self.stepper, &mut *self.work);
         // Gaps are halved: the unknowns are half the coordinates, so a shift is twice its unknown.
         for (k, turn) in work.turns.iter_mut().enumerate() {
-            let tangent = <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&work.half[k]).0);
-            *turn = work.places[k].attitude * tangent * 0.5;
+            *turn = turn_in_space(&work.places[k].attitude, &parts(&work.half[k]).0);
         }
         work.equations.set_after(stepper.joints(), &stepper.tree, &work.next_places, &work.turns);
         work.equations.factorise(&stepper.tree, &work.coefficients);
@@ -133,8 +144,8 @@ impl<'a> Problem<'a> {
 
     /// The number of iterations, and whether they converged near the identity with all determinants positive.
     fn attempt(&mut self, most: u32, longest: f64) -> (u32, bool) {
-        // The length of the last update, if it wasn't shortened.
-        let (mut made, mut before) = (0, f64::INFINITY);
+        // The length of the last update, if it wasn't shortened, and if it was one of Newton's iteration.
+        let (mut made, mut before, mut told) = (0, f64::INFINITY, None);
         for _ in 0..most {
             made += 1;
             let Update { length: update, size, largest, rounded } = self.newton(longest);
@@ -142,17 +153,24 @@ impl<'a> Problem<'a> {
                 return (made, false);
             }
             let is_rounding = before.max(update) <= size * ROUNDING.0 && update >= before * ROUNDING.1;
-            if update <= (size * (f64::EPSILON * SETTLED)).max(rounded) || is_rounding {
+            let curvature = Curvature::told(told, update);
+            if curvature.has_settled(update, size) || update <= rounded || is_rounding {
                 return (made, self.is_wanted());
             }
             let is_whole = largest <= longest * longest;
             before = if is_whole { update } else { f64::INFINITY };
-            if is_whole && may_suffice(update, size) {
-                let second = self.simplified();
+            told = is_whole.then_some(update);
+            // An update by the last Jacobian takes half the time of one by its own, and shortens the next by a constant factor.
+            let (mut last, mut is_near) = (update, is_whole && update <= size * NEAR);
+            while is_near && made < most {
+                let Update { length, size, rounded, .. } = self.simplified();
                 made += 1;
-                if second.length <= second.rounded || has_sufficed(update, second.length, second.size) {
+                if length <= rounded || curvature.has_sufficed(last, length, size) {
                     return (made, self.is_wanted());
                 }
+                let factor = length / last;
+                is_near = curvature.has_sufficed(length, length * factor, size);
+                (last, told) = (length, None);
             }
         }
         (made, false)
