@@ -26,15 +26,16 @@ use alloc::boxed::Box;
 use nalgebra::{Matrix3, Matrix6, Vector2, Vector3, Vector6};
 
 use super::ends::Ends;
-use super::turning::{Square, Turning};
-use crate::numbers::{Columns, Register, cross, dot, padded, square, vector};
-
-const ZERO: Square = [[0.0; 4]; 3];
+use super::point_joint::PointJoint;
+use super::square::{Square, ZERO, loaded, matrix, shift_of, stored, turn_of};
+use super::turning::Turning;
+use crate::numbers::{Columns, Plain, Register, cross, dot, padded, square};
 
 /// The slopes of a ball joint towards the root, and the factors of its body.
 #[derive(Clone)]
 pub(super) struct Ball {
-    /// The sign of the joint's functions: one if the body is below, minus one if it is above.
+    joint: PointJoint,
+    /// The sign of the functions that hold points: one if the body is below, minus one if it is above.
     sign: f64,
     /// The joint's points, m: in the axes of the body, and of its parent or of space.
     points: [Vector3<f64>; 2],
@@ -52,27 +53,6 @@ pub(super) struct Ball {
     beyond: Square,
     /// The joint's further functions.
     pub(super) turning: Option<Box<Turning>>,
-}
-
-fn matrix(square: &Square) -> Matrix3<f64> {
-    Matrix3::from_fn(|row, column| square[column][row])
-}
-
-/// The columns of a matrix; their fourth entries are such that registers load and permute neighbours.
-#[hot]
-fn stored<R: Register>(zero: R, m: &Matrix3<f64>) -> Columns<R> {
-    let [x, y, z] = &m.data.0;
-    Columns([zero.of([x[0], x[1], x[2], y[0]]), zero.of([y[0], y[1], y[2], z[0]]), zero.of([z[0], z[1], z[2], y[2]])])
-}
-
-#[hot]
-fn loaded<R: Register>(zero: R, square: &Square) -> Columns<R> {
-    Columns([zero.of(square[0]), zero.of(square[1]), zero.of(square[2])])
-}
-
-#[hot]
-fn saved<R: Register>(columns: Columns<R>) -> Square {
-    columns.entries()
 }
 
 /// Adds blocks to the matrix of a body without a ball joint.
@@ -94,54 +74,42 @@ fn add_block<R: Register, const ROW: usize, const COLUMN: usize>(m: &mut Matrix6
     }
 }
 
-/// The turn of a body. The fourth entry, which has no meaning, is such that registers load and permute neighbours.
+/// The matrix `Sᵀ` of a point in the axes of a body with this attitude.
 #[hot]
-fn turn<R: Register>(zero: R, of: &Vector6<f64>) -> R {
-    zero.of([of[0], of[1], of[2], of[3]])
+fn transposed_slope<R: Register>(attitude: Columns<R>, point: R) -> Square {
+    let [x, y, z] = attitude.transposed().0;
+    Columns([cross(point, x), cross(point, y), cross(point, z)]).entries()
 }
 
-/// The shift of a body.
+/// The matrix `T` of a point at the end of this arm, for turns by the columns.
 #[hot]
-fn shift<R: Register>(zero: R, of: &Vector6<f64>) -> R {
-    zero.of([of[3], of[4], of[5], of[2]])
-}
-
-#[hot]
-pub(super) fn joined<R: Register>(first: R, second: R) -> Vector6<f64> {
-    let ([a, b, c, _], [d, e, f, _]) = (first.entries(), second.entries());
-    Vector6::new(a, b, c, d, e, f)
+fn slope<R: Register>(turn: Columns<R>, arm: R) -> Square {
+    let [x, y, z] = turn.0;
+    Columns([cross(x, arm), cross(y, arm), cross(z, arm)]).entries()
 }
 
 impl Ball {
-    /// A joint with this point of the body above and of the body below.
-    pub(super) fn new([above, below]: [Vector3<f64>; 2], is_below: bool, rows: usize) -> Self {
-        let (sign, points) = if is_below { (1.0, [below, above]) } else { (-1.0, [above, below]) };
+    /// A joint towards the root, of which the body is the one below or the one above.
+    pub(super) fn new(joint: PointJoint, is_below: bool) -> Self {
+        let sides = |[above, below]: [Vector3<f64>; 2]| if is_below { [below, above] } else { [above, below] };
         let (own, before, after) = ([ZERO; 4], [ZERO; 2], [ZERO; 2]);
         let (inverse, z, g, h, beyond) = (ZERO, ZERO, ZERO, ZERO, ZERO);
-        let turning = (rows > 3).then(|| Box::new(Turning::new(rows - 3)));
-        Self { sign, points, own, before, after, inverse, z, g, h, beyond, turning }
+        let (sign, points) = (if is_below { 1.0 } else { -1.0 }, sides(joint.points));
+        let turning = (joint.count > 0).then(|| Box::new(Turning::new(joint.cosines.map(sides), joint.count)));
+        Self { joint, sign, points, own, before, after, inverse, z, g, h, beyond, turning }
     }
 
     /// Whether these are the equations of such a joint.
-    pub(super) fn is_like(&self, points: [Vector3<f64>; 2], is_below: bool, rows: usize) -> bool {
-        let Self { sign, points: of, .. } = Self::new(points, is_below, rows);
-        self.sign == sign && self.points == of
+    pub(super) fn is_like(&self, joint: &PointJoint, is_below: bool) -> bool {
+        self.joint == *joint && (self.sign > 0.0) == is_below
     }
 
     /// Adds to the body's matrix.
     pub(super) fn add_matrix(&mut self, m: &Matrix6<f64>) {
         let before = self.own;
-        self.set_matrix(m);
+        self.set_matrix(Plain::ZERO, m);
         for (entry, before) in self.own.as_flattened_mut().iter_mut().zip(before.as_flattened()) {
             entry.iter_mut().zip(before).for_each(|(entry, before)| *entry += before);
-        }
-    }
-
-    /// Sets the body's matrix.
-    pub(super) fn set_matrix(&mut self, m: &Matrix6<f64>) {
-        for (k, [x, y, z, u, v, w]) in m.data.0.into_iter().enumerate() {
-            let [turns, shifts] = if k < 3 { [0, 1] } else { [2, 3] };
-            (self.own[turns][k % 3], self.own[shifts][k % 3]) = ([x, y, z, 0.0], [u, v, w, 0.0]);
         }
     }
 
@@ -171,7 +139,7 @@ impl Ball {
     pub(super) fn reactions(&self, multipliers: &Vector6<f64>) -> [Vector6<f64>; 2] {
         let force = multipliers.fixed_rows::<3>(0) * self.sign;
         let torque = |side: usize| {
-            let of = |turning: &Turning| turning.before[side] * multipliers.fixed_rows::<3>(3);
+            let of = |turning: &Turning| matrix(&turning.before[side]) * multipliers.fixed_rows::<3>(3);
             self.turning.as_deref().map_or_else(Vector3::zeros, of)
         };
         [0, 1].map(|side| {
@@ -187,25 +155,48 @@ impl Ball {
 
 #[hot]
 impl Ball {
+    /// Sets the body's matrix.
+    pub(super) fn set_matrix<R: Register>(&mut self, zero: R, m: &Matrix6<f64>) {
+        let columns = &m.data.0;
+        for k in 0..3 {
+            let ([x, y, z, u, v, w], [a, b, c, d, e, f]) = (columns[k], columns[k + 3]);
+            self.own[0][k] = zero.of([x, y, z, u]).entries();
+            self.own[1][k] = zero.of([u, v, w, z]).entries();
+            self.own[2][k] = zero.of([a, b, c, d]).entries();
+            self.own[3][k] = zero.of([d, e, f, c]).entries();
+        }
+    }
+
     /// Sets `S` at these attitudes of the body, and of its parent if there is one.
-    pub(super) fn set_before<R: Register>(&mut self, zero: R, attitudes: [Option<&Matrix3<f64>>; 2]) {
-        for side in 0..2 {
-            if let Some(attitude) = attitudes[side] {
-                let (point, rows) = (zero.of(padded(&self.points[side])), stored(zero, attitude).transposed());
-                let [x, y, z] = rows.0;
-                self.before[side] = Columns([cross(point, x), cross(point, y), cross(point, z)]).entries();
-            }
+    pub(super) fn set_before<R: Register>(&mut self, zero: R, own: &Matrix3<f64>, parent: Option<&Matrix3<f64>>) {
+        let own = stored(zero, own);
+        self.before[0] = transposed_slope(own, zero.of(padded(&self.points[0])));
+        let mut other = Columns::multiple(zero, 1.0);
+        if let Some(parent) = parent {
+            other = stored(zero, parent);
+            self.before[1] = transposed_slope(other, zero.of(padded(&self.points[1])));
+        }
+        if let Some(turning) = &mut self.turning {
+            turning.before = turning.slopes(zero, [own, other], [own, other]);
         }
     }
 
     /// Sets `T` at these attitudes, for unknowns that turn the bodies by these maps.
-    pub(super) fn set_after<R: Register>(&mut self, zero: R, places: [Option<(&Matrix3<f64>, &Matrix3<f64>)>; 2]) {
-        for side in 0..2 {
-            if let Some((attitude, turn)) = places[side] {
-                let arm = stored(zero, attitude).map(zero.of(padded(&self.points[side])));
-                let [x, y, z] = stored(zero, turn).0;
-                self.after[side] = Columns([cross(x, arm), cross(y, arm), cross(z, arm)]).entries();
-            }
+    pub(super) fn set_after<R: Register>(
+        &mut self,
+        zero: R,
+        [own, turn]: [&Matrix3<f64>; 2],
+        parent: Option<[&Matrix3<f64>; 2]>,
+    ) {
+        let (own, turn) = (stored(zero, own), stored(zero, turn));
+        self.after[0] = slope(turn, own.map(zero.of(padded(&self.points[0]))));
+        let mut other = [Columns::multiple(zero, 1.0); 2];
+        if let Some(parent) = parent {
+            other = [stored(zero, parent[0]), stored(zero, parent[1])];
+            self.after[1] = slope(other[1], other[0].map(zero.of(padded(&self.points[1]))));
+        }
+        if let Some(turning) = &mut self.turning {
+            turning.after = turning.slopes(zero, [own, other[0]], [turn, other[1]]);
         }
     }
 
@@ -233,12 +224,12 @@ impl Ball {
         let inverse = Columns(rows).transposed().scaled(zero.of([1.0; 4]) / determinant);
         let mut z = inverse * g;
         if let Some(turning) = &mut self.turning {
-            let [by_turn, by_point] = turning.factorise(&matrix(&saved(inverse)), &matrix(&saved(z)));
-            z = z + Columns::of(zero, &by_point);
-            turning.force = saved(h * Columns::of(zero, &by_turn));
+            let [by_turn, by_point] = turning.factorise(zero, inverse, z);
+            z = z + by_point;
+            turning.force = (h * by_turn).entries();
         }
-        self.beyond = saved(a22 - h * z);
-        (self.inverse, self.z, self.g, self.h) = (saved(inverse), saved(z), saved(g), saved(h));
+        self.beyond = (a22 - h * z).entries();
+        (self.inverse, self.z, self.g, self.h) = (inverse.entries(), z.entries(), g.entries(), h.entries());
         let [[b11, ..], [_, b22, ..], [_, _, b33, _]] = b.entries();
         determinant.entries()[0] / (b11 * b22 * b33).abs()
     }
@@ -254,7 +245,7 @@ impl Ball {
         };
         turned = turned - loaded(zero, &turning.force);
         let [by_turn, by_point] = &turning.of_parent;
-        let (by_turn, by_point) = (Columns::of(zero, by_turn), Columns::of(zero, by_point));
+        let (by_turn, by_point) = (loaded(zero, by_turn), loaded(zero, by_point));
         of_turn = of_turn + by_point;
         [s * turned + (by_turn + by_point * t), turned, of_turn, beyond]
     }
@@ -262,63 +253,61 @@ impl Ball {
     /// Adds to the blocks of the body's matrix.
     pub(super) fn add<R: Register>(&mut self, zero: R, [first, second, third, fourth]: [Columns<R>; 4]) {
         let [a11, a21, a12, a22] = &mut self.own;
-        *a11 = saved(loaded(zero, a11) + first);
-        *a21 = saved(loaded(zero, a21) + second);
-        *a12 = saved(loaded(zero, a12) + third);
-        *a22 = saved(loaded(zero, a22) + fourth);
+        *a11 = (loaded(zero, a11) + first).entries();
+        *a21 = (loaded(zero, a21) + second).entries();
+        *a12 = (loaded(zero, a12) + third).entries();
+        *a22 = (loaded(zero, a22) + fourth).entries();
     }
 
-    /// Replaces the right-hand side `r` by `w` and `q`, and the gap by `g`. Returns the addition to the parent's, and the
-    /// squares of opposed parts of `w`, and of their shifts.
+    /// The pair `w` and `q` for the right-hand side `r` and this gap, the addition to the right-hand side of the parent, and the
+    /// squares of the opposed parts of `w` and of the shift.
     pub(super) fn inwards<R: Register>(
         &self,
         zero: R,
-        right: &mut Vector6<f64>,
+        [r1, r2]: [R; 2],
         gap: &mut Vector6<f64>,
-    ) -> ([R; 2], Vector2<f64>) {
-        let (r1, r2) = (turn(zero, right), shift(zero, right));
-        let gamma = turn(zero, gap) * zero.of([self.sign; 4]);
+    ) -> ([R; 2], [R; 2], Vector2<f64>) {
+        let gamma = turn_of(zero, gap) * zero.of([self.sign; 4]);
         let inverse = loaded(zero, &self.inverse);
-        let own = inverse.map(r1 - loaded(zero, &self.g).map(gamma));
         let taken = inverse.map(loaded(zero, &self.before[0]).map(r2));
-        let (mut w, mut multipliers, mut torque) = (own - taken, zero, zero);
+        let mut w = inverse.map(r1 - loaded(zero, &self.g).map(gamma)) - taken;
+        let mut torque = zero;
         if let Some(turning) = &self.turning {
-            let [s, turned] = turning.reduced(&vector(w), &vector(shift(zero, gap)));
-            w = w + zero.of(padded(&turned));
-            (multipliers, torque) = (zero.of(padded(&s)), zero.of(padded(&(turning.before[1] * s))));
+            let [s, turned, of_parent] = turning.reduced(zero, w, shift_of(zero, gap));
+            (w, torque) = (w + turned, of_parent);
+            gap.as_mut_slice()[3..].copy_from_slice(&s.entries()[..3]);
         }
         let q = r2 - loaded(zero, &self.own[3]).map(gamma) - loaded(zero, &self.h).map(w);
-        let size = Vector2::new(square(own) + square(taken), square(loaded(zero, &self.after[0]).map(taken)));
-        *right = joined(w, q);
-        *gap = joined(gamma, multipliers);
-        ([loaded(zero, &self.before[1]).map(q) + torque, q], size)
+        let opposed = square(taken);
+        let size = Vector2::new(2.0 * opposed, self.points[0].norm_squared() * opposed);
+        ([w, q], [loaded(zero, &self.before[1]).map(q) + torque, q], size)
     }
 
-    /// Replaces `w` and `q` by the body's unknowns, and `g` by the multipliers.
+    /// The unknowns of the body by those of its parent; replaces the gap by the multipliers.
     pub(super) fn outwards<R: Register>(
         &self,
         zero: R,
-        parent: Option<&Vector6<f64>>,
-        unknowns: &mut Vector6<f64>,
+        [w, q]: [R; 2],
+        parent: Option<[R; 2]>,
         gap: &mut Vector6<f64>,
-    ) {
-        let (w, q, gamma) = (turn(zero, unknowns), shift(zero, unknowns), turn(zero, gap));
-        let (mut of_parent, mut point) = (zero, zero);
+    ) -> [R; 2] {
+        let gamma = turn_of(zero, gap) * zero.of([self.sign; 4]);
+        let (mut turn, mut point) = (zero, zero);
         if let Some(of) = parent {
-            of_parent = turn(zero, of);
-            point = shift(zero, of) + loaded(zero, &self.after[1]).map(of_parent);
+            turn = of[0];
+            point = of[1] + loaded(zero, &self.after[1]).map(turn);
         }
         let mut z = zero - w - loaded(zero, &self.z).map(point);
-        let (mut force, mut multipliers) = (q + loaded(zero, &self.beyond).map(point), zero);
+        let mut force = q + loaded(zero, &self.beyond).map(point);
         if let Some(turning) = &self.turning {
-            let s = vector(shift(zero, gap));
-            let [all, turned] = turning.completed(&s, &vector(of_parent), &vector(point));
-            z = z - zero.of(padded(&turned));
-            force = force - loaded(zero, &turning.force).map(of_parent);
-            multipliers = zero.of(padded(&all));
+            let [multipliers, turned] = turning.completed(zero, shift_of(zero, gap), turn, point);
+            z = z - turned;
+            force = force - loaded(zero, &turning.force).map(turn);
+            gap.as_mut_slice()[3..].copy_from_slice(&multipliers.entries()[..3]);
         }
         let x = point - gamma - loaded(zero, &self.after[0]).map(z);
-        *unknowns = joined(z, x);
-        *gap = joined(force * zero.of([-self.sign; 4]), multipliers);
+        let [a, b, c, _] = (force * zero.of([-self.sign; 4])).entries();
+        gap.as_mut_slice()[..3].copy_from_slice(&[a, b, c]);
+        [z, x]
     }
 }

@@ -129,12 +129,6 @@ pub trait Constraint<const K: usize>: Debug + Send + Sync + 'static {
         K
     }
 
-    /// The points `ρ_a` of the body above and `ρ_b` of the body below, m, in their axes, if the first three functions are
-    /// `x_b + R_b ρ_b − x_a − R_a ρ_a` and the others depend on attitudes alone: a step takes less time then. By default none.
-    fn points(&self) -> Option<[Vector3<f64>; 2]> {
-        None
-    }
-
     /// The functions, each in a unit of its own: m for lengths, 1 for cosines.
     fn gap(&self, above: &Place, below: &Place) -> SVector<f64, K>;
 

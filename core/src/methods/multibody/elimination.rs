@@ -35,12 +35,15 @@
 //!
 //! Matrices have room for six functions; the loops over those that a joint has are compiled for each number of them.
 
+use alloc::vec::Vec;
+
 use nalgebra::{Matrix6, SMatrix, Vector2, Vector6};
 
-use super::ball::{add_blocks, joined};
+use super::ball::add_blocks;
 use super::ends::Ends;
 use super::graph::Tree;
-use super::nodes::{Block, Loop, Node, Unknowns, add};
+use super::nodes::{Block, Loop, Node, Pair, Unknowns, add};
+use super::square::{shift_of, turn_of, write};
 use super::turning::inverted;
 use crate::numbers::{Coordinates as _, OnRegisters, Pattern, Register, on_registers};
 
@@ -59,13 +62,13 @@ macro_rules! by_rows {
 }
 
 /// Factorises all matrices.
-pub(super) fn factorise(tree: &Tree, nodes: &mut [Node], loops: &mut [Loop]) {
+pub(super) fn factorise(tree: &Tree, nodes: &mut [Node], loops: &mut [Loop], pairs: &mut Vec<Pair>) {
     for closing in &mut *loops {
         closing.free = free(closing, nodes);
     }
     on_registers(Factorisation { tree, nodes });
     if !loops.is_empty() {
-        close(tree, nodes, loops);
+        close(tree, nodes, loops, pairs);
     }
 }
 
@@ -188,7 +191,7 @@ fn free(closing: &Loop, nodes: &[Node]) -> Vector6<f64> {
 }
 
 /// The border's columns `Y`, and the factors of `S_L`.
-fn close(tree: &Tree, nodes: &[Node], loops: &mut [Loop]) {
+fn close(tree: &Tree, nodes: &[Node], loops: &mut [Loop], pairs: &mut Vec<Pair>) {
     let bodies = nodes.len();
     for closing in &mut *loops {
         closing.columns.fill(Vector6::zeros());
@@ -199,7 +202,7 @@ fn close(tree: &Tree, nodes: &[Node], loops: &mut [Loop]) {
                 closing.columns[row * bodies + body] += closing.ends[side].before.column(row);
             }
             let all = row * bodies..(row + 1) * bodies;
-            substitute(tree, nodes, &mut closing.columns[all.clone()], &mut closing.multipliers[all]);
+            substitute(tree, nodes, &mut closing.columns[all.clone()], &mut closing.multipliers[all], pairs);
         }
     }
     for i in 0..loops.len() {
@@ -236,8 +239,8 @@ fn close(tree: &Tree, nodes: &[Node], loops: &mut [Loop]) {
 /// Solves for these right-hand sides by the factors. Returns the summed squares of the `w`, of turns and of shifts: in
 /// a stiffly constrained system the solution is a small difference of large `w`, which sets its rounding error.
 pub(super) fn solve(tree: &Tree, nodes: &[Node], loops: &[Loop], unknowns: &mut Unknowns) -> Vector2<f64> {
-    let Unknowns { bodies, joints, loops: of_loops } = unknowns;
-    let size = substitute(tree, nodes, bodies, joints);
+    let Unknowns { bodies, joints, loops: of_loops, pairs } = unknowns;
+    let size = substitute(tree, nodes, bodies, joints, pairs);
     for (k, closing) in loops.iter().enumerate() {
         // The right-hand sides `C_L x + g`, reduced by the rows above.
         let mut right = of_loops[k];
@@ -276,8 +279,11 @@ fn substitute(
     nodes: &[Node],
     of_bodies: &mut [Vector6<f64>],
     of_joints: &mut [Vector6<f64>],
+    pairs: &mut Vec<Pair>,
 ) -> Vector2<f64> {
-    on_registers(Substitution { tree, nodes, of_bodies, of_joints })
+    pairs.clear();
+    pairs.resize(nodes.len(), [[0.0; 4]; 2]);
+    on_registers(Substitution { tree, nodes, of_bodies, of_joints, pairs })
 }
 
 /// The substitution of right-hand sides in the factors of the trees.
@@ -286,34 +292,59 @@ struct Substitution<'a> {
     nodes: &'a [Node],
     of_bodies: &'a mut [Vector6<f64>],
     of_joints: &'a mut [Vector6<f64>],
+    /// The sums that bodies on ball joints add to their parents, then `w` and `q`, then the unknowns.
+    pairs: &'a mut [Pair],
 }
 
 #[hot]
+fn pair<R: Register>(zero: R, of: &Pair) -> [R; 2] {
+    [zero.of(of[0]), zero.of(of[1])]
+}
+
+#[hot]
+fn stored_pair<R: Register>([turn, shift]: [R; 2]) -> Pair {
+    [turn.entries(), shift.entries()]
+}
+
+#[hot]
+fn sum<R: Register>(a: [R; 2], b: [R; 2]) -> [R; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
 impl OnRegisters for Substitution<'_> {
     type Output = Vector2<f64>;
 
+    #[hot]
     fn run<R: Register>(self, zero: R) -> Vector2<f64> {
-        let Self { tree, nodes, of_bodies, of_joints } = self;
+        let Self { tree, nodes, of_bodies, of_joints, pairs } = self;
         let mut size = Vector2::zeros();
         for &k in tree.order.iter().rev() {
+            let right = sum([turn_of(zero, &of_bodies[k]), shift_of(zero, &of_bodies[k])], pair(zero, &pairs[k]));
             let Some(ball) = &nodes[k].ball else {
+                write(&mut of_bodies[k], right);
                 size += reduce(&nodes[k], k, of_bodies, of_joints);
                 continue;
             };
-            let ([turn, shift], opposed) = ball.inwards(zero, &mut of_bodies[k], &mut of_joints[k]);
+            let (own, added, opposed) = ball.inwards(zero, right, &mut of_joints[k]);
+            pairs[k] = stored_pair(own);
             size += opposed;
             if let Some(parent) = tree.members[k].parent {
-                of_bodies[parent] += joined(turn, shift);
+                pairs[parent] = stored_pair(sum(pair(zero, &pairs[parent]), added));
             }
         }
         for &k in &tree.order {
             let Some(ball) = &nodes[k].ball else {
                 complete(&nodes[k], k, of_bodies, of_joints);
+                pairs[k] = stored_pair([turn_of(zero, &of_bodies[k]), shift_of(zero, &of_bodies[k])]);
                 continue;
             };
-            let (parent, mut unknowns) = (tree.members[k].parent.map(|parent| &of_bodies[parent]), of_bodies[k]);
-            ball.outwards(zero, parent, &mut unknowns, &mut of_joints[k]);
-            of_bodies[k] = unknowns;
+            let mut parent = None;
+            if let Some(of) = tree.members[k].parent {
+                parent = Some(pair(zero, &pairs[of]));
+            }
+            let unknowns = ball.outwards(zero, pair(zero, &pairs[k]), parent, &mut of_joints[k]);
+            pairs[k] = stored_pair(unknowns);
+            write(&mut of_bodies[k], unknowns);
         }
         size
     }

@@ -13,7 +13,6 @@ use super::elimination::{factorise, solve};
 use super::ends::Ends;
 use super::graph::{Joint, Member, Neighbour, Tree};
 use super::nodes::{Loop, Node, Unknowns, set_blocks};
-use super::turning::Turning;
 use super::{parts, place_of};
 use crate::numbers::{OnRegisters, Register, on_registers};
 
@@ -76,17 +75,33 @@ impl OnRegisters for BallSlopes<'_> {
         let Self { tree, nodes, places, turns } = self;
         for (k, (node, member)) in nodes.iter_mut().zip(&tree.members).enumerate() {
             let Some(ball) = &mut node.ball else { continue };
-            let (own, mut other) = (&places[k].attitude, None);
-            if let Some(parent) = member.parent {
-                other = Some((parent, &places[parent].attitude));
-            }
-            match (turns, other) {
-                (None, None) => ball.set_before(zero, [Some(own), None]),
-                (None, Some((_, other))) => ball.set_before(zero, [Some(own), Some(other)]),
-                (Some(turns), None) => ball.set_after(zero, [Some((own, &turns[k])), None]),
-                (Some(turns), Some((parent, other))) => {
-                    ball.set_after(zero, [Some((own, &turns[k])), Some((other, &turns[parent]))]);
+            let own = &places[k].attitude;
+            match (turns, member.parent) {
+                (None, None) => ball.set_before(zero, own, None),
+                (None, Some(parent)) => ball.set_before(zero, own, Some(&places[parent].attitude)),
+                (Some(turns), None) => ball.set_after(zero, [own, &turns[k]], None),
+                (Some(turns), Some(parent)) => {
+                    ball.set_after(zero, [own, &turns[k]], Some([&places[parent].attitude, &turns[parent]]));
                 }
+            }
+        }
+    }
+}
+
+/// The matrices of bodies on ball joints.
+struct BallMatrices<'a> {
+    nodes: &'a mut [Node],
+    matrices: &'a [Matrix6<f64>],
+}
+
+impl OnRegisters for BallMatrices<'_> {
+    type Output = ();
+
+    #[hot]
+    fn run<R: Register>(self, zero: R) {
+        for (node, matrix) in self.nodes.iter_mut().zip(self.matrices) {
+            if let Some(ball) = &mut node.ball {
+                ball.set_matrix(zero, matrix);
             }
         }
     }
@@ -113,11 +128,10 @@ impl OnRegisters for BallVelocities<'_> {
 /// The functions of a joint at these places.
 pub(super) fn gap(joined: &Joint, places: &[Place]) -> Vector6<f64> {
     let (above, below) = (place_of(places, joined.above), &places[joined.below]);
-    let Some([of_above, of_below]) = joined.points.as_ref().filter(|_| joined.rows == 3) else {
-        return joined.functions.gap(above, below);
-    };
-    let gap = below.of(of_below) - above.of(of_above);
-    Vector6::new(gap.x, gap.y, gap.z, 0.0, 0.0, 0.0)
+    match &joined.of_points {
+        Some(joint) => joint.gap(above, below),
+        None => joined.functions.gap(above, below),
+    }
 }
 
 /// The gap of a joint by all its functions, if some of them aren't imposed.
@@ -128,20 +142,20 @@ pub(super) fn gap_of_all(joined: &Joint, places: &[Place]) -> Option<Vector6<f64
 impl Equations {
     /// Makes room for these bodies and joints, if the last ones were others. Slopes and matrices aren't set.
     pub(super) fn fit(&mut self, joints: &[Joint], tree: &Tree) {
-        let rows = |joint: Option<usize>| joint.map_or(0, |joint| joints[joint].functions.rows());
+        let rows = |joint: Option<usize>| joint.map_or(0, |joint| joints[joint].rows);
         let all = [tree.members.len(), tree.loops.len()];
-        let points = |member: &Member, neighbours: &[Neighbour]| {
+        let of_points = |member: &Member, neighbours: &[Neighbour]| {
             let is_alone = !neighbours.iter().any(|neighbour| neighbour.is_coupled);
-            member.joint.and_then(|joint| joints[joint].points).filter(|_| is_alone)
+            member.joint.and_then(|joint| joints[joint].of_points).filter(|_| is_alone)
         };
         let node = |(member, neighbours): (&Member, &Vec<_>)| Node {
-            ball: points(member, neighbours).map(|points| Ball::new(points, member.is_below, rows(member.joint))),
+            ball: of_points(member, neighbours).map(|joint| Ball::new(joint, member.is_below)),
             ..Node::new(rows(member.joint), member.parent.is_some(), neighbours)
         };
         let is_like = |(one, (member, neighbours)): (&Node, (&Member, &Vec<_>))| {
-            let is_ball = match (&one.ball, points(member, neighbours)) {
-                (Some(ball), Some(points)) => ball.is_like(points, member.is_below, rows(member.joint)),
-                (ball, points) => ball.is_none() && points.is_none(),
+            let is_ball = match (&one.ball, of_points(member, neighbours)) {
+                (Some(ball), Some(joint)) => ball.is_like(&joint, member.is_below),
+                (ball, joint) => ball.is_none() && joint.is_none(),
             };
             is_ball && one.is_like(rows(member.joint), member.parent.is_some(), neighbours)
         };
@@ -178,7 +192,7 @@ impl Equations {
     ) {
         for (k, (node, member)) in self.nodes.iter_mut().zip(&tree.members).enumerate() {
             let Some(joint) = member.joint else { continue };
-            if node.ball.as_ref().is_some_and(|ball| ball.turning.is_none()) {
+            if node.ball.is_some() {
                 continue;
             }
             let joined = &joints[joint];
@@ -188,10 +202,6 @@ impl Equations {
             let [above, below] = if member.is_below { [other, own] } else { [own, other] };
             let at = [place_of(places, joined.above), &places[joined.below]];
             joined.functions.slopes(at, [above.0, below.0], [above.1, below.1]);
-            if let Some(turning) = node.ball.as_mut().and_then(|ball| ball.turning.as_mut()) {
-                let both = node.ends.each_mut().map(|ends| &*side.of(ends));
-                Turning::set(if matches!(side, Side::Before) { &mut turning.before } else { &mut turning.after }, both);
-            }
         }
         for (closing, &joint) in self.loops.iter_mut().zip(&tree.loops) {
             let joined = &joints[joint];
@@ -228,17 +238,15 @@ impl Equations {
     /// Factorises these matrices of the bodies and their blocks.
     pub(super) fn factorise(&mut self, tree: &Tree, coefficients: &Coefficients) {
         let has_loops = !self.loops.is_empty();
+        on_registers(BallMatrices { nodes: &mut self.nodes, matrices: &coefficients.matrices });
         for (node, matrix) in self.nodes.iter_mut().zip(&coefficients.matrices) {
-            if let Some(ball) = &mut node.ball {
-                ball.set_matrix(matrix);
-            }
             // Loops compare their pivots with those between free bodies.
             if node.ball.is_none() || has_loops {
                 node.matrix = *matrix;
             }
         }
         set_blocks(tree, &mut self.nodes, &coefficients.blocks);
-        factorise(tree, &mut self.nodes, &mut self.loops);
+        factorise(tree, &mut self.nodes, &mut self.loops, &mut self.unknowns.pairs);
     }
 
     /// Solves for these residuals of the bodies and gaps of the joints; returns the result of [`solve`].

@@ -2,10 +2,13 @@
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+use core::any::Any;
 
-use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector6};
 
 use super::constraint::{Constraint, Place};
+use super::joint::Joint;
+use super::point_joint::PointJoint;
 use crate::error::SetupError;
 
 /// The functions of a joint. Vectors have zeros after them, and matrices unused columns.
@@ -19,9 +22,8 @@ pub(super) trait Functions: Send + Sync {
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64>;
 
-    /// The points of the body above and of the body below that the first three functions hold together, if the others depend on
-    /// attitudes alone.
-    fn points(&self) -> Option<[Vector3<f64>; 2]> {
+    /// The joint as one that holds points, if it is one.
+    fn of_points(&self) -> Option<PointJoint> {
         None
     }
 
@@ -54,8 +56,8 @@ impl<C: Constraint<K>, const K: usize> Functions for ConstraintFunctions<C, K> {
         self.0.functions().min(K)
     }
 
-    fn points(&self) -> Option<[Vector3<f64>; 2]> {
-        self.0.points().filter(|_| self.rows() >= 3)
+    fn of_points(&self) -> Option<PointJoint> {
+        (&self.0 as &dyn Any).downcast_ref::<Joint>().and_then(Joint::of_points)
     }
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64> {

@@ -5,9 +5,8 @@ use alloc::sync::Arc;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::Vector3;
-
 use super::functions::Functions;
+use super::point_joint::PointJoint;
 use crate::error::SetupError;
 
 /// A joint between two bodies, or between space and a body.
@@ -17,15 +16,15 @@ pub(super) struct Joint {
     /// The body above; `None` is space.
     pub(super) above: Option<usize>,
     pub(super) below: usize,
-    /// The points of both bodies that the first functions hold together, m.
-    pub(super) points: Option<[Vector3<f64>; 2]>,
+    /// The joint as one that holds points, if it is one.
+    pub(super) of_points: Option<PointJoint>,
     /// The number of functions.
     pub(super) rows: usize,
 }
 
 impl Joint {
     pub(super) fn new(functions: Arc<dyn Functions>, above: Option<usize>, below: usize) -> Self {
-        Self { points: functions.points(), rows: functions.rows(), functions, above, below }
+        Self { of_points: functions.of_points(), rows: functions.rows(), functions, above, below }
     }
 }
 

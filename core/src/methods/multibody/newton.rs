@@ -2,17 +2,19 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use nalgebra::{Matrix3, Vector2, Vector3, Vector6};
+use nalgebra::{Matrix3, Vector2, Vector6};
 
 roots!();
 
 use super::constraint::Place;
 use super::equations::gap;
 use super::parts;
+use super::square::{shift_of, stored, three, turn_of};
 use super::stepper::MultibodyStepper;
 use super::workspace::Workspace;
 use crate::error::StepError;
-use crate::groups::{CayleyRetraction, LieGroup as _, Retraction, SO3};
+use crate::groups::{CayleyRetraction, Retraction, SO3};
+use crate::numbers::{Columns, OnRegisters, Register, on_registers, vector};
 use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS};
 
 /// The relative rounding error of an update, by places and by opposed forces.
@@ -44,12 +46,33 @@ fn squares(of: &Vector6<f64>) -> Vector2<f64> {
     Vector2::new(turn.norm_squared(), shift.norm_squared())
 }
 
-/// The turn in the axes of space by half the unknown of a body, `½ R T`, with the tangent `T = 2 (I + ŷ)/(1 + |y|²)` of the
-/// Cayley map.
-fn turn_in_space(attitude: &Matrix3<f64>, half: &Vector3<f64>) -> Matrix3<f64> {
-    let [x, y, z] = [0, 1, 2].map(|k| attitude.column(k));
-    let turned = [x + y * half.z - z * half.y, y + z * half.x - x * half.z, z + x * half.y - y * half.x];
-    Matrix3::from_columns(&turned) / (1.0 + half.norm_squared())
+/// The places after increments, to the bit, and the turns in the axes of space by the unknowns, `½ R T` with the tangent
+/// `T = 2 (I + ŷ)/(1 + |y|²)` of the Cayley map.
+struct Increments<'a> {
+    places: &'a [Place],
+    half: &'a [Vector6<f64>],
+    next: &'a mut [Place],
+    turns: &'a mut [Matrix3<f64>],
+}
+
+impl OnRegisters for Increments<'_> {
+    type Output = ();
+
+    #[hot]
+    fn run<R: Register>(self, zero: R) {
+        let Self { places, half, next, turns } = self;
+        for (((place, half), next), turn) in places.iter().zip(half).zip(next).zip(turns) {
+            let y = vector(turn_of(zero, half));
+            let increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&y);
+            let attitude = stored(zero, &place.attitude);
+            next.attitude.data.0 = three(attitude + attitude * stored(zero, &increment));
+            let [a, b, c] = attitude.0;
+            let (u, v, w) = (zero.of([y.x; 4]), zero.of([y.y; 4]), zero.of([y.z; 4]));
+            let turned = Columns([a + b * w - c * v, b + c * u - a * w, c + a * v - b * u]);
+            turn.data.0 = three(turned.scaled(zero.of([1.0 / (1.0 + y.norm_squared()); 4])));
+            next.position = place.position + vector(shift_of(zero, half)) * 2.0;
+        }
+    }
 }
 
 /// The momentum equations of a step from the workspace's `now` with its `a`, and the constraints at its end.
@@ -82,15 +105,10 @@ impl<'a> Problem<'a> {
         Self { stepper, work, weight: 1.0 / (length * length), extent: 1.0 + extent * extent, met: None }
     }
 
-    /// Computes the places after these increments, to the bit.
-    pub(super) fn set_next(&mut self) {
-        let Workspace { now, places, half, next_places, .. } = &mut *self.work;
-        for (k, next) in next_places.iter_mut().enumerate() {
-            let (turn, shift) = parts(&half[k]);
-            let increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&turn);
-            let attitude = *now[k].0.advance(&increment).as_matrix();
-            *next = Place { attitude, position: places[k].position + shift * 2.0 };
-        }
+    /// Sets the places after these increments, and the turns by the unknowns.
+    fn set_next(&mut self) {
+        let Workspace { places, half, next_places: next, turns, .. } = &mut *self.work;
+        on_registers(Increments { places, half, next, turns });
     }
 
     /// One Newton iteration.
@@ -100,9 +118,6 @@ impl<'a> Problem<'a> {
         self.set_next();
         let (stepper, work) = (self.stepper, &mut *self.work);
         // Gaps are halved: the unknowns are half the coordinates, so a shift is twice its unknown.
-        for (k, turn) in work.turns.iter_mut().enumerate() {
-            *turn = turn_in_space(&work.places[k].attitude, &parts(&work.half[k]).0);
-        }
         work.equations.set_after(stepper.joints(), &stepper.tree, &work.next_places, &work.turns);
         work.equations.factorise(&stepper.tree, &work.coefficients);
         self.met = work.equations.redundant(&stepper.tree);

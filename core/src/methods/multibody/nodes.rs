@@ -142,7 +142,12 @@ pub(super) struct Unknowns {
     /// The multipliers of each body's joint towards the root.
     pub(super) joints: Vec<Vector6<f64>>,
     pub(super) loops: Vec<Vector6<f64>>,
+    /// The turns and shifts of bodies on ball joints during the solution.
+    pub(super) pairs: Vec<Pair>,
 }
+
+/// A turn and a shift as registers load them.
+pub(super) type Pair = [[f64; 4]; 2];
 
 /// Adds a block to the equations of a body, in the columns of a body.
 pub(super) fn add(nodes: &mut [Node], [row, column]: [usize; 2], matrix: &Matrix6<f64>) {

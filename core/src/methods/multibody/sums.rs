@@ -191,7 +191,7 @@ impl MultibodyStepper {
         let nodes = self.inertias(&coefficients);
         let right = coefficients.vectors.iter().zip(momenta).map(|(bias, momentum)| bias - momentum);
         let joints = alloc::vec![Vector6::zeros(); self.bodies()];
-        let mut unknowns = Unknowns { bodies: right.collect(), joints, loops: Vec::new() };
+        let mut unknowns = Unknowns { bodies: right.collect(), joints, ..Unknowns::default() };
         solve(&self.free, &nodes, &[], &mut unknowns);
         unknowns.bodies
     }
@@ -204,7 +204,7 @@ impl MultibodyStepper {
         };
         let mut nodes: Vec<_> = limit.matrices.iter().zip(&self.free.neighbours).map(of_body).collect();
         set_blocks(&self.free, &mut nodes, &limit.blocks);
-        factorise(&self.free, &mut nodes, &mut []);
+        factorise(&self.free, &mut nodes, &mut [], &mut Vec::new());
         nodes
     }
 
