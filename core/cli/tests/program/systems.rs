@@ -405,12 +405,10 @@ fn an_ensemble_of_several_bodies() {
     assert_eq!(passages, 6);
     let wrong = |draw: &str| message(&format!("{text}[ensemble]\nmembers = 2\n{draw}\n"));
     let limited = text.replacen("rate = 2\n", "rate = 2\nlimits = { from = -1, to = 1 }\n", 1);
-    let of_limits =
-        message(&format!("{limited}[ensemble]\nmembers = 2\ndraw.joint.joint-1.limits.to = {{ from = 1, to = 2 }}\n"));
-    assert!(
-        of_limits.contains("an event knows the orbit, the angles, the wheels and the joints of the file"),
-        "{of_limits}"
-    );
+    let zero = "draw.joint.joint-1.zero.euler = [0, { from = 0, to = 1 }, 0]";
+    let of_limits = message(&format!("{limited}[ensemble]\nmembers = 2\n{zero}\n"));
+    let knows = "an event knows the orbit, the angles, the wheels and the joints of the file";
+    assert!(of_limits.contains(knows), "{of_limits}");
     assert!(wrong("draw.joint.elbow.rate = { from = 1, to = 2 }").contains("no `joint` is called `elbow`"));
     assert!(wrong("draw.start.velocity = [1, { from = 1, to = 2 }, 0]").contains("the file has no `start`"));
 }
