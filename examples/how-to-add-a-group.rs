@@ -90,7 +90,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let (coarse, fine) = (error(0.01, 100)?, error(0.005, 200)?);
     println!("with a spring: energy within {coarse:.1e}, with half of the step {fine:.1e}");
-    assert!(!Line::SELF_ADJOINT && (coarse / fine - 2.0).abs() < 0.1);
+    assert!(!Line::FACTS.is_self_adjoint && (coarse / fine - 2.0).abs() < 0.1);
     Ok(())
 }
 

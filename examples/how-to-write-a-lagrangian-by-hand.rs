@@ -24,8 +24,6 @@ fn skew(m: Matrix3<f64>) -> Vector3<f64> {
 
 /// The Lagrangian and its momenta, from which a step is derived and by which its properties are tested.
 impl DiscreteLagrangian for Body {
-    const SELF_ADJOINT: bool = true;
-
     /// The Lagrangian `tr((F − I) J_d (F − I)ᵀ)/(2h)`.
     fn l_d(&self, f: &Matrix3<f64>, (): &(), h: f64) -> f64 {
         let d = f - Matrix3::identity();
@@ -79,6 +77,7 @@ impl Effect for Body {
         denominators: 1,
         has_constant_inertia: true,
         is_quadratic: true,
+        is_self_adjoint: true,
         ..Facts::ANY
     };
     const DERIVATION: &'static str = "the free rigid body (3.13), by hand";

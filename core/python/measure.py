@@ -1,6 +1,7 @@
 """Times of this package: python measure.py [BESIDE], where that is the example `beside` of this package, built.
 
-Prints the steps a second of a loop in Python with a torque each, and what an import takes; and with BESIDE the seconds of a
+Prints the steps a second of a loop in Python with a torque each, what an import takes, and gradients by start and all
+parameters in plain runs of as many steps; and with BESIDE the seconds of a
 million steps and of 100,000 members from Python, and in Rust, in turns, and their ratios.
 """
 
@@ -60,9 +61,38 @@ def imported() -> float:
     return min(run("import liestep") for _ in range(7)) - min(run("pass") for _ in range(7))
 
 
+def gradients() -> dict[str, tuple[ls.Term, list[float]]]:
+    """Terms whose gradients are compared with runs, and velocities at the start."""
+    J, K = [[1.2, 0.1, 0], [0.1, 2, 0.2], [0, 0.2, 2.5]], np.diag([1.0, 2, 3, 1.5])
+    body = ls.body(J, kinetic="cayley")
+    return {
+        "a top by (3.13)": (TOP, [0.5, 2, 12]),
+        "a satellite": (body + ls.gravity_gradient(GM=3.0, r=1.5, J=J, direction=[0, 0.6, 0.8]), [0.3, 1, -0.5]),
+        "a body on a spring": (body + ls.spring(k=3, length=1, at=[0, 0, 1], anchor=[0, 1, 3]), [0.3, 1, -0.5]),
+        "Suslov's body": (body + ls.nonholonomic("SO3", zero="a.dot(Omega)", a=[0, 0, 1]), [0.3, 1, 0]),
+        "a body in space": (
+            ls.lagrangian("SE3", l_d="((F - I) * K * (F - I).transpose()).trace() / (2 * h)", K=K), [0.3, 0.2, -0.4, 0.1, 0.5, 0.2]),
+    }
+
+
+def in_plain_runs(term: ls.Term, velocity: list[float], until: float = 100.0) -> float:
+    """The time of a gradient by that of a run, both of 10,000 steps and in turns."""
+    stepper, times = term.stepper(0.01), []
+    for _ in range(10):
+        begun = time.perf_counter()
+        run = stepper.run(velocity=velocity, until=until, every=10_000)
+        between = time.perf_counter()
+        run.gradient(energy=[0.0, 1.0])
+        times.append((between - begun, time.perf_counter() - between))
+    plain, gradient = np.array(times).min(axis=0)
+    return float(gradient / plain)
+
+
 for name, torque in (("a list", [1e-6, 0.0, -1e-6]), ("an array", np.array([1e-6, 0.0, -1e-6]))):
     print(f"a loop: {1 / min(loop(torque) for _ in range(5)):.3g} steps a second, each with {name} as its torque")
 print(f"an import: {1000 * imported():.0f} ms")
+for name, (term, velocity) in gradients().items():
+    print(f"a gradient of {name}: {in_plain_runs(term, velocity):.2f} plain runs")
 if sys.argv[1:]:
     beside = ("a million steps", steps, lambda: in_rust("steps")), ("100,000 members", members, members_in_rust)
     for name, python, rust in beside:

@@ -20,7 +20,7 @@ pub use crate::mechanics::{
     Term, WithKinetic, WithoutKinetic,
 };
 pub use crate::methods::{Constraint, Place, Slope};
-pub use crate::numbers::{Blocks, Coordinates, Entries, InLanes, Lanes, Numbers, Real, real};
+pub use crate::numbers::{Blocks, Coordinates, Entries, Identity, InLanes, Lanes, Numbers, Real, real};
 
 // Decisions of a solve, for steps that are programs.
 pub use crate::solving::{

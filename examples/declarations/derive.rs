@@ -24,7 +24,7 @@ struct Entry {
 }
 
 const fn shown<L: DiscreteLagrangian>(name: &'static str, about: &'static str) -> Entry {
-    Entry { name, about, derivation: L::DERIVATION, is_self_adjoint: Some(L::SELF_ADJOINT) }
+    Entry { name, about, derivation: L::DERIVATION, is_self_adjoint: Some(L::FACTS.is_self_adjoint) }
 }
 
 const fn continuous<L: ContinuousLagrangian>(name: &'static str, about: &'static str) -> Entry {

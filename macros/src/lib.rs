@@ -56,8 +56,9 @@ use liestep_derivation::Role;
 /// the bodies conserve together, and whether a step solves them together. An example is
 /// `examples/declarations/double_pendulum.rs`.
 ///
-/// Rotations have the group `SO3`. Translations have `R1`, `R2` or `R3`: their increment is a scalar or a vector in the
-/// axes of space, which is added. The rotation of a wheel about its axis is in `R1`, as in
+/// A factor is any group of the library, as in `group(F = SE3, Q = SO3)`. Matrices of several sizes have an `I` of the size of
+/// the matrix that it stands beside. Translations have `R1`, `R2` or `R3`: their increment is a scalar or a vector in the axes
+/// of space, which is added. The rotation of a wheel about its axis is in `R1`, as in
 /// `examples/declarations/gyrostat.rs`.
 ///
 /// Two to four factors are declared together, by `l_d` or by `l`; a `#[force]` acts on them by their displacements. The

@@ -31,8 +31,6 @@ macro_rules! term_as {
 /// The derived terms outside of the stages.
 macro_rules! declared_as {
     ($inner:ty) => {
-        const SELF_ADJOINT: bool = <$inner>::SELF_ADJOINT;
-
         of_inner! {
             fn l_d(f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
             fn right_momentum(f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Vector<Self>;

@@ -94,7 +94,7 @@ fn assert_discretised<L, const N: usize, const D: usize>(system: &L, name: &str)
 where
     L: System<Group: MatrixLieGroup<N, D>> + ContinuousLagrangian + Clone,
 {
-    const { assert!(L::SELF_ADJOINT && !L::FACTS.is_quadratic) };
+    const { assert!(L::FACTS.is_self_adjoint && !L::FACTS.is_quadratic) };
     stages::assert_stages(system, 6);
     let (_, defect) = poisson::worst(system, &[0.02, 0.1], 7);
     assert!(defect < 1e-11, "{name}: Poisson {defect:e}");

@@ -91,13 +91,13 @@ struct SymmetricAddedMass {
 }
 
 // The constant is available at compile time, as a composition requires.
-const _: () = assert!(FullTop::SELF_ADJOINT && !OneEnd::SELF_ADJOINT);
+const _: () = assert!(FullTop::FACTS.is_self_adjoint && !OneEnd::FACTS.is_self_adjoint);
 
 /// The constant, after checks that the text states it with this sign and with these words on how it was found.
 fn found<L: DiscreteLagrangian>(sign: &str, how: &str) -> Option<bool> {
     let (sign, how) = (format!(" {sign} −l_d(F⁻¹, "), format!(" −h)    [{how}"));
     let mut lines = L::DERIVATION.lines().filter(|line| line.contains(&sign) && line.contains(&how));
-    lines.next().map(|_| L::SELF_ADJOINT)
+    lines.next().map(|_| L::FACTS.is_self_adjoint)
 }
 
 #[test]

@@ -9,7 +9,7 @@ use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingS
 use liestep::motion::{Plan, Steerable};
 use liestep::prelude::*;
 use liestep::{StepError, Stepper};
-use nalgebra::{Matrix3, Matrix4, Point3, Rotation3, Vector2, Vector3, Vector4};
+use nalgebra::{Matrix3, Matrix4, Point3, Rotation3, SVector, Vector2, Vector3, Vector4};
 use workbench::measure::relative;
 use workbench::runge_kutta;
 
@@ -156,6 +156,48 @@ fn a_satellite_librates_to_second_order() {
     let (coarse, fine) = (error(200), error(400));
     println!("{coarse:e} {fine:e}");
     assert!(coarse < 0.02 && (coarse / fine - 4.0).abs() < 0.1, "{coarse:e} {fine:e}");
+}
+
+/// A composition takes the values of its stages' own times, and has its order; and so has a part of its step.
+#[test]
+fn a_composition_sees_the_values_of_its_stages() {
+    let field = |t: f64| Vector3::new((0.7 * t).sin(), 0.3 * (1.1 * t).cos(), 1.0);
+    let scene = || body() + Dipole { moment: Vector3::new(1.0, -0.5, 2.0), field: Vector3::z() };
+    let velocity = Vector3::new(0.5, -1.0, 2.0);
+    let end = |scheme, steps: u32| {
+        let stepper =
+            Stepper::composed(scene(), 4.0 / f64::from(steps), scheme).unwrap().driven(move |t| ((), field(t)));
+        let mut state = stepper.start(SO3::identity(), velocity).unwrap();
+        stepper.run(&mut state, u64::from(steps) - 1).unwrap();
+        // The last step as a part of one.
+        stepper.part(&state, 1.0).unwrap().momentum()
+    };
+    let truth = end(CompositionScheme::KAHAN_LI_8, 800);
+    let f = |t: f64, y: SVector<f64, 12>| {
+        let (R, momentum) =
+            (Matrix3::from_column_slice(&y.as_slice()[..9]), Vector3::from_column_slice(&y.as_slice()[9..]));
+        let turn = momentum.component_div(&Vector3::new(3.0, 3.0, 4.5));
+        let torque = Vector3::new(1.0, -0.5, 2.0).cross(&(R.transpose() * field(t)));
+        let (turned, pushed) = (R * turn.cross_matrix(), momentum.cross(&turn) + torque);
+        SVector::<f64, 12>::from_iterator(turned.iter().chain(pushed.iter()).copied())
+    };
+    let mut y = SVector::<f64, 12>::from_iterator(
+        Matrix3::identity().iter().copied().chain(velocity.component_mul(&Vector3::new(3.0, 3.0, 4.5)).iter().copied()),
+    );
+    let h = 4.0 / 4000.0;
+    for step in 0..4000_u32 {
+        let t = f64::from(step) * h;
+        let a = f(t, y);
+        let b = f(t + h / 2.0, y + a * (h / 2.0));
+        let c = f(t + h / 2.0, y + b * (h / 2.0));
+        let d = f(t + h, y + c * h);
+        y += (a + (b + c) * 2.0 + d) * (h / 6.0);
+    }
+    let exact = Vector3::from_column_slice(&y.as_slice()[9..]);
+    assert!(relative(&truth, &exact) < 1e-9, "{truth} {exact}");
+    let [coarse, fine] = [80, 160].map(|steps| relative(&end(CompositionScheme::SUZUKI_4, steps), &truth));
+    println!("{coarse:e} {fine:e}");
+    assert!(((coarse / fine).log2() - 4.0).abs() < 0.1, "{coarse:e} {fine:e}");
 }
 
 /// The Jacobi integral, conserved as the system doesn't depend on time in the frame of the orbit, oscillates and

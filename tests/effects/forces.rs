@@ -5,11 +5,13 @@ use declarations::{FluidDrag, Thruster};
 use liestep::effects::{AirDrag, Drag, MagneticDamping, Thrust, Torque};
 use liestep::groups::{SE2, SL2};
 use liestep::laws::samples;
+use liestep::mechanics::Regular;
+use liestep::methods::CompositionScheme;
 use liestep::{SO3, Stepper, force};
 use nalgebra::{Matrix2, Matrix3, Point2, Vector2, Vector3};
 use workbench::measure::relative;
 
-use super::{body, gravity, moved};
+use super::{body, gravity, moved, started};
 
 /// A force without a physical meaning, different at both ends of a step, with terms of all kinds.
 #[force(
@@ -87,17 +89,46 @@ fn a_constant_torque_adds_its_impulse() {
     }
 }
 
-/// A heavy body with drag, damping in a field and a torque is of second order, compared with a fine step.
+/// A heavy body with drag, damping in a field and a torque.
+fn braked() -> impl Regular<Scalar = f64, Group = SO3, Advected: Copy> + Clone {
+    let (drag, torque) = (Drag { c: 0.7, J: body().J_d.to_inertia() }, Vector3::new(0.3, -0.2, 0.1));
+    let damping = MagneticDamping { k: 1.5, field: Vector3::new(0.5, -0.7, 0.6), J: drag.J };
+    let air = AirDrag { c: 0.4, air: Vector3::new(0.2, 0.5, -0.3), J: drag.J };
+    let thrust = Thrust { at: Vector3::x(), thrust: Vector3::new(0.1, 0.2, 0.3) };
+    body() + gravity() + drag + Torque { torque } + damping + air + thrust
+}
+
+/// It is of second order, compared with a fine step.
 #[test]
 fn forces_keep_the_order() {
-    let at_one = |steps: u32| {
-        let (drag, torque) = (Drag { c: 0.7, J: body().J_d.to_inertia() }, Vector3::new(0.3, -0.2, 0.1));
-        let damping = MagneticDamping { k: 1.5, field: Vector3::new(0.5, -0.7, 0.6), J: drag.J };
-        let scene = body() + gravity() + drag + Torque { torque } + damping;
-        moved(scene, 1.0 / f64::from(steps), steps.into()).momentum()
-    };
+    let at_one = |steps: u32| moved(braked(), 1.0 / f64::from(steps), steps.into()).momentum();
     let truth = at_one(20_000);
     let [coarse, fine] = [100, 200].map(|steps| relative(&at_one(steps), &truth));
     println!("{coarse:e} {fine:e}");
     assert!((coarse / fine - 4.0).abs() < 0.1, "{coarse:e} {fine:e}");
+}
+
+/// Compositions of it have their own orders, and a step of `−h` undoes one of `h`.
+#[test]
+fn forces_are_composed() {
+    let at_one = |scheme, steps: u32| {
+        let stepper = Stepper::composed(braked(), 1.0 / f64::from(steps), scheme).unwrap();
+        let mut state = stepper.adopt(&started(braked(), 1.0).1);
+        stepper.run(&mut state, steps.into()).unwrap();
+        state.momentum()
+    };
+    let truth = at_one(CompositionScheme::KAHAN_LI_8, 400);
+    for (scheme, order, steps) in [(CompositionScheme::SUZUKI_4, 4.0, 25), (CompositionScheme::KAHAN_LI_6, 6.0, 20)] {
+        let [coarse, fine] = [steps, 2 * steps].map(|steps| relative(&at_one(scheme, steps), &truth));
+        println!("{coarse:e} {fine:e}");
+        assert!(((coarse / fine).log2() - order).abs() < 0.15, "{order}: {coarse:e} {fine:e}");
+    }
+    let (forwards, mut state) = started(braked(), 0.05);
+    let (backwards, before) = (Stepper::new(braked(), -0.05).unwrap(), state.momentum());
+    forwards.run(&mut state, 40).unwrap();
+    assert!(relative(&state.momentum(), &before) > 0.1);
+    let mut state = backwards.adopt(&state);
+    backwards.run(&mut state, 40).unwrap();
+    let apart = relative(&state.momentum(), &before);
+    assert!(apart < 1e-12, "{apart:e}");
 }

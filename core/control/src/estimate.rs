@@ -11,6 +11,9 @@ use crate::verdict::{ControlError, Verdict};
 const UNSEEN: f64 = 1e-13;
 /// The damping, relative to the readings' own second derivatives, at which a step is given up.
 const MOST_DAMPING: f64 = 1e8;
+/// The ratio of the steps of a search to those of the one before: a phase that is known over a time is off by less than a turn
+/// over three times as long.
+const GROWTH: usize = 3;
 
 /// The residuals of a state's readings, by the number of steps before it and the constants.
 type Readings<'a, M> = dyn Fn(usize, &<M as Plant>::Motion, &[f64]) -> Vec<f64> + 'a;
@@ -22,6 +25,8 @@ pub struct Estimate<'a, M: Plant> {
     stepper: &'a M,
     start: M::State,
     steps: usize,
+    /// The number of steps of the first search.
+    first: usize,
     readings: Box<Readings<'a, M>>,
     constants: Vec<f64>,
     scales: Vec<f64>,
@@ -89,6 +94,7 @@ impl<'a, M: Plant> Estimate<'a, M> {
             stepper,
             start,
             steps,
+            first: steps,
             readings: Box::new(readings),
             constants: Vec::new(),
             scales: Vec::new(),
@@ -135,6 +141,14 @@ impl<'a, M: Plant> Estimate<'a, M> {
         Self { tolerance, most, ..self }
     }
 
+    /// Sets the number of steps whose readings the first search has; each search after it has three times as many, and begins
+    /// where the one before ended. By default all readings are taken at once. The squares of a long motion have minima far from
+    /// the least one, where guess and motion are turns apart.
+    #[must_use]
+    pub fn growing_from(self, steps: usize) -> Self {
+        Self { first: steps, ..self }
+    }
+
     /// Searches for the least squares; the [verdict](Fit::verdict) says whether they were found.
     ///
     /// # Errors
@@ -154,9 +168,22 @@ impl<'a, M: Plant> Estimate<'a, M> {
         if let Some((what, _)) = checks.iter().find(|(_, is_right)| !is_right) {
             return Err(ControlError::Unusable(what));
         }
-        let inputs = vec![self.given(); self.steps];
+        let mut steps = self.first.clamp(1, self.steps);
+        let mut fit = self.searched(steps, &self.start, &self.constants)?;
+        while steps < self.steps {
+            steps = steps.saturating_mul(GROWTH).min(self.steps);
+            let before = fit.iterations;
+            fit = self.searched(steps, &fit.states[0], &fit.constants)?;
+            fit.iterations += before;
+        }
+        Ok(fit)
+    }
+
+    /// The least squares of the readings of so many steps, from near this start and these constants.
+    fn searched(&self, steps: usize, start: &M::State, constants: &[f64]) -> Result<Fit<M>, ControlError> {
+        let inputs = vec![self.given(); steps];
         let mut trial = self
-            .trial(&self.start, inputs, DVector::from_column_slice(&self.constants))
+            .trial(start, inputs, DVector::from_column_slice(constants))
             .map_err(|(step, error)| ControlError::Step(step, error))?
             .ok_or(ControlError::Unusable("reading"))?;
         let (mut damping, mut iterations) = (0.0, 0);
@@ -263,7 +290,7 @@ impl<'a, M: Plant> Estimate<'a, M> {
                 let constants: Vec<f64> = constants.iter().zip(change).map(|(now, change)| now + change).collect();
                 (self.readings)(step, M::motion(state), &constants)
             };
-            let slopes = model.slopes(state, &stages[step.min(self.steps - 1)], &self.scales, values)?;
+            let slopes = model.slopes(state, &stages[step.min(inputs.len() - 1)], &self.scales, values)?;
             let (hessian, gradient) = of_state(&mut stages, &mut end, step);
             for (slope, reading) in slopes.row_iter().zip(reading.iter()) {
                 let slope = slope.transpose();

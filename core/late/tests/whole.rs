@@ -3,6 +3,8 @@
 
 #[path = "whole/motions.rs"]
 mod motions;
+#[path = "whole/products.rs"]
+mod products;
 #[path = "whole/special_linear.rs"]
 mod special_linear;
 #[path = "whole/tangent.rs"]
@@ -62,6 +64,16 @@ fn extended_poses() -> Generators {
     let mut list: Generators = turns.iter().map(|&(a, b)| matrix(5, &[(a, b, -1.0), (b, a, 1.0)])).collect();
     list.extend((0..6).map(|k| matrix(5, &[(k % 3, 3 + k / 3, 1.0)])));
     list
+}
+
+/// Blocks of one matrix, each of which the group of these generators moves.
+fn blocks(count: usize, generators: &Generators) -> Generators {
+    let (size, n) = (3, 3 * count);
+    let in_block = move |block: usize, own: &Vec<f64>| {
+        let entry = |at: usize| (size * block + at / size, size * block + at % size, own[at]);
+        matrix(n, &(0..size * size).map(entry).collect::<Vec<_>>())
+    };
+    (0..count).flat_map(|block| generators.iter().map(move |own| in_block(block, own))).collect()
 }
 
 fn decimal(entry: f64) -> String {
@@ -134,10 +146,12 @@ impl Free {
 
 #[test]
 fn groups_of_texts_have_the_order_and_the_invariants() {
-    let groups: [(&str, usize, Generators, bool); 6] = [
+    let groups: [(&str, usize, Generators, bool); 8] = [
         ("SL(3)", 3, special_linear(), false),
         ("Sp(4)", 4, symplectic(), false),
         ("SO(4)", 4, orthogonal(4), true),
+        ("SO(6), fifteen unknowns", 6, orthogonal(6), true),
+        ("three rotations, nine rows", 9, blocks(3, &orthogonal(3)), true),
         ("SE_2(3)", 5, extended_poses(), true),
         ("affine maps of the plane", 3, affine(2), false),
         ("affine maps of space", 4, affine(3), false),

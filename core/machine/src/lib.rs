@@ -1,19 +1,4 @@
-//! Machine code for the programs of a Lagrangian that is read while a program runs.
-//!
-//! [`Machine`] is a back end of [`Whole`](liestep_late::Whole): `Whole<Machine>`. A step is interpreted until it has been
-//! made some tens of times, and any other program some hundred, so that a first step waits for no compiler; then it becomes
-//! a function, by [Cranelift](https://cranelift.dev), operation by operation: nothing is contracted or reassociated, and
-//! functions like `sin` are calls of the interpreter's. So the steps are the same to the bit.
-//!
-//! There is machine code for x86-64 and aarch64, for numbers and for the eight lanes of an ensemble. In other lanes
-//! programs are interpreted. The code for aarch64 hasn't been run; there, too, the tests here
-//! compare it with the interpreter.
-//!
-//! # Memory
-//!
-//! All code of a process is in one arena of at most [`MOST_MEMORY`] bytes, [`used_memory`] of which are taken: two mappings
-//! of memory, however many texts there are. A declaration that is read stays as long as the process, and so does its code.
-//! Where the arena ends, or the system gives no memory, programs stay interpreted, with the same bits.
+#![doc = include_str!("../README.md")]
 //!
 //! # Inside
 //!

@@ -30,6 +30,8 @@ pub(crate) struct Readings {
 pub(crate) struct Task {
     step: f64,
     steps: usize,
+    /// The number of steps of the first search.
+    first: usize,
     start: Start,
     readings: Vec<Readings>,
     /// The places of the unknown numbers of the parameters, those that are one unknown together.
@@ -135,7 +137,7 @@ impl Task {
         if !self.axes.is_empty() {
             estimate = estimate.inputs(like, places, self.deviations.clone());
         }
-        let found = estimate.known(known).until(self.tolerance, self.most).solve();
+        let found = estimate.known(known).until(self.tolerance, self.most).growing_from(self.first).solve();
         found.map_err(|error| match error {
             ControlError::Step(..) => Failure::step(&error),
             _ => Failure::setup(&error),

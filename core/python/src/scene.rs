@@ -6,7 +6,8 @@ use liestep::accuracy::{Accuracy, Choice};
 use liestep::motion::{AnyStepper, Propagator as _};
 use liestep::with::{Method, Scheme};
 use liestep_late::{
-    Course as _, Declaration, LateError, Question, QuestionError, Role, Whole, WholeError, for_accuracy, stepper,
+    Course as _, Declaration, LateError, Question, QuestionError, Role, Whole, WholeError, for_accuracy, layout,
+    stepper,
 };
 
 use crate::ensemble::{Draws, Members, Outcome, run_members};
@@ -41,7 +42,7 @@ impl Scene {
         let is_own = matches!(method.scheme, Scheme::Step | Scheme::Composition(_));
         let is_declared = is_own && !method.compensated && !method.varies();
         if self.has_force && !is_declared {
-            let message = "a scene with a force is made by its own step alone: leave the method out";
+            let message = "a scene with a force is made by its own step or a `composition` of it: take one, or leave the method out";
             return Err(Failure::Of("SetupError", message.to_owned()));
         }
         if self.changes.are_none() {
@@ -131,7 +132,7 @@ impl Scene {
         course: &Course,
     ) -> Result<(RunRecord, Choice), Failure> {
         let accuracy = Accuracy { tolerance, horizon: course.until };
-        let layout = Whole::<Backend>::layout_of(self.declaration)?;
+        let layout = layout::<Backend>(self.declaration)?;
         let (attitude, velocity) = (start.attitude(&layout.factors)?, start.velocity(&layout.factors)?);
         let question = Question { accuracy, attitude: &attitude, velocity };
         let found = for_accuracy::<Backend>(self.declaration, &self.numbers, question);

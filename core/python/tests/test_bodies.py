@@ -236,3 +236,21 @@ def test_an_accuracy_of_several_bodies() -> None:
         assert abs(run[name][-1] - fine[name][-1]) < 5e-6
     with pytest.raises(ls.Error, match="chosen for an accuracy by trial runs"):
         scene.start()
+
+
+def test_an_effective_inertia_is_that_of_no_rigid_body():
+    """Moments of a space agency's demonstration, beside Euler's equations."""
+    moments, start = np.array([5174, 3593, 245.4]), np.array([0.02, 0.5, 0.03])
+    for J in (moments, np.diag(moments)):
+        for kinetic in ("rigid", "geodesic"):
+            with pytest.raises(ls.DeclarationError, match="effective=True"):
+                ls.body(J, kinetic=kinetic)
+    w, h = start.copy(), 0.005
+    rate = lambda w: np.cross(moments * w, w) / moments  # noqa: E731
+    for _ in range(2000):
+        a = rate(w)
+        b = rate(w + h / 2 * a)
+        c = rate(w + h / 2 * b)
+        w = w + h / 6 * (a + 2 * (b + c) + rate(w + h * c))
+    run = ls.body(moments, effective=True).run(velocity=start, until=10)
+    assert abs(run.velocity[-1] - w).max() < 1e-6

@@ -82,6 +82,42 @@ def test_order_momentum_and_relation(name):
         assert abs(np.log2(errors[0] / errors[1]) - order) < 0.1, errors
 
 
+def test_a_product_of_any_groups():
+    weight, spin = [0.3, -0.2, 0.4, 3], [0.9, 0.4, -2]
+    numbers = {"J": np.diag([0.3, 0.4, 0.5]), "c": 0.4, "up": [0, 0, 1]}
+    wheel = "((Q - I) * J * (Q - I).transpose()).trace() / (2 * h)"
+    weighed = "- h / 2 * (({}) * (1 + c * u.z) + ({}) * (1 + c * (Q.transpose() * u).z))"
+    body = ls.lagrangian(
+        {"Q": "SO3", "F": "SE3"},
+        advected={"w": "height.seen_from(F)", "u": "up.seen_from(Q)"},
+        l_d="((F - I) * K * (F - I).transpose()).trace() / (2 * h) + "
+        + wheel
+        + weighed.format("w.dot(weight)", "(F.transpose() * w).dot(weight)"),
+        K=np.diag([2, 1.5, 1.1, 1.3]),
+        weight=weight,
+        height=[0, 0, 1, 0],
+        **numbers,
+    )
+    # By a turn and a place the step is another's, and the motion the same.
+    apart = ls.lagrangian(
+        {"Q": "SO3", "F": "SO3", "d": "R3"},
+        advected={"v": "up.seen_from(F)", "x": "d.seen_from(space)", "u": "up.seen_from(Q)"},
+        l_d="((F - I) * K * (F - I).transpose()).trace() / (2 * h) + m * d.norm_squared() / (2 * h) + "
+        + wheel
+        + weighed.format("v.dot(s) + W * x[2]", "(F.transpose() * v).dot(s) + W * (x + d)[2]"),
+        K=np.diag([2, 1.5, 1.1]),
+        m=1.3,
+        s=weight[:3],
+        W=weight[3],
+        **numbers,
+    )
+    ends = [
+        term.stepper(0.01).run(velocity=[*spin, 0.3, -0.7, 1.1, 0.2, 0.5, -0.4], until=2) for term in (body, apart)
+    ]
+    assert abs(ends[0].velocity[-1][:6] - ends[1].velocity[-1][:6]).max() < 1e-12
+    assert abs(ends[0]["energy"] - ends[1]["energy"]).max() < 1e-12
+
+
 def test_an_accuracy_is_reached():
     term, basis, _ = body("SL3")
     velocity = 0.3 * np.cos(np.arange(1, len(basis) + 1))

@@ -38,7 +38,8 @@ where
     S: Scene<Scalar = f64>,
     Group<S>: Steppable<S>,
 {
-    let compositions = CompositionScheme::ALL.into_iter().filter(|scheme| scheme.base() == 2 && S::SELF_ADJOINT);
+    let compositions =
+        CompositionScheme::ALL.into_iter().filter(|scheme| scheme.base() == 2 && S::FACTS.is_self_adjoint);
     let schemes = [Scheme::Step].into_iter().chain(compositions.map(Scheme::Composition));
     let all = schemes.chain(<Group<S> as Steppable<S>>::schemes(scene));
     let candidate = |scheme: Scheme| {

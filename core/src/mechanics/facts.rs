@@ -50,6 +50,15 @@ pub struct Facts {
     /// the values elsewhere.
     pub is_quadratic: bool,
 
+    /// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` for all values of the parameters, and for a force
+    /// `δW(F, w, h, η, η⁺) = −δW(F⁻¹, F⁻¹·w, −h, η⁺, η)`.
+    ///
+    /// If so, a step of `−h` is the exact inverse of a step of `h`, the order is even (2 at least), and symmetric
+    /// compositions raise it; otherwise the order is 1 in general. The macro determines it, by normal forms or by
+    /// values at random points of a finite field. [`DERIVATION`](crate::mechanics::Effect::DERIVATION) states how, and whether it
+    /// would hold if vectors were declared as points. In an implementation by hand it is the author's claim.
+    pub is_self_adjoint: bool,
+
     /// The blocks of unknowns between which the Jacobian of [`newton_system`](crate::mechanics::Effect::newton_system) is
     /// zero. If bodies are coupled only by potentials of the ends of a step, each body is solved separately. Blocks end
     /// where factors of the group end; a single block is always valid.
@@ -73,6 +82,7 @@ impl Facts {
         denominators: 0,
         has_constant_inertia: false,
         is_quadratic: false,
+        is_self_adjoint: false,
         apart: Blocks::WHOLE,
         links_neighbours: false,
         constraints: 0,
@@ -103,6 +113,7 @@ impl Facts {
             denominators,
             has_constant_inertia: self.has_constant_inertia && other.has_constant_inertia,
             is_quadratic: self.is_quadratic && other.is_quadratic,
+            is_self_adjoint: self.is_self_adjoint && other.is_self_adjoint,
             apart,
             links_neighbours: self.links_neighbours || other.links_neighbours,
             constraints: self.constraints + other.constraints,

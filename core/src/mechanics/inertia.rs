@@ -9,7 +9,8 @@
 //! ```
 //!
 //! A real body has a positive semidefinite `J_d` (equivalently, its moments satisfy the triangle inequality) and a
-//! positive definite `J`. The solvability of a step requires both, so the constructors check them.
+//! positive definite `J`. The solvability of a step requires both, so the constructors check them. An effective inertia, as of
+//! a body with rotors or in a fluid, is positive definite alone, and its steps have to be shorter.
 
 use nalgebra::{Matrix3, RealField, Vector3};
 use thiserror::Error;
@@ -50,7 +51,7 @@ pub enum InertiaError {
     },
     /// `J_d` has a negative eigenvalue, so the principal moments violate the triangle inequality.
     #[error(
-        "no body has this inertia: J_d has the negative eigenvalue {smallest:e}, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given"
+        "no body has this inertia: J_d has the negative eigenvalue {smallest:e}, so the largest principal moment exceeds the sum of the others; check which of the two inertias is given, or take `effective`"
     )]
     TriangleInequality {
         /// The smallest eigenvalue of `J_d`, kg m².
@@ -202,6 +203,19 @@ impl<T: RealField + Copy> DiagonalNonstandardInertia<T> {
 }
 
 impl<T: Real> DiagonalNonstandardInertia<T> {
+    /// The inertia with these principal moments of `J`, kg m², all positive, also where no rigid body has them.
+    ///
+    /// # Errors
+    ///
+    /// As of [`Inertia::effective`].
+    pub fn effective(moments: Vector3<T>) -> Result<Self, InertiaError>
+    where
+        T: RealField + Copy,
+    {
+        let diagonal = nonstandard_diagonal(&moments);
+        checked(&Matrix3::from_diagonal(&diagonal), Kind::Effective).map(|_| Self(diagonal))
+    }
+
     /// The principal moments of the ordinary inertia `J`, kg m², in the order of the axes.
     #[must_use]
     pub fn principal_moments(&self) -> Vector3<T> {
@@ -251,6 +265,29 @@ impl<T: RealField + Copy> Inertia<T> {
         Self::from_diagonal(moments)
     }
 
+    /// An effective inertia `J`, kg m²: symmetric and positive definite, as of a body with rotors or in a fluid, whose moments may
+    /// violate the triangle inequality.
+    ///
+    /// Steps of (3.13) and of its kind with it are of order two, but a solution isn't unique on the branch of the identity:
+    /// keep `h|Ω|` well below one.
+    ///
+    /// # Errors
+    ///
+    /// [`InertiaError`], if the matrix isn't finite, symmetric and positive definite.
+    ///
+    /// # Examples
+    ///
+    /// ```
+    /// use liestep::mechanics::Inertia;
+    /// use nalgebra::{Matrix3, Vector3};
+    /// let moments = Matrix3::from_diagonal(&Vector3::new(5174.0, 3593.0, 245.4));
+    /// assert!(Inertia::new(moments).is_err() && Inertia::effective(moments).is_ok());
+    /// ```
+    pub fn effective(matrix: Matrix3<T>) -> Result<Self, InertiaError> {
+        checked(&(Matrix3::from_diagonal_element(matrix.trace() * real(0.5)) - matrix), Kind::Effective)?;
+        Ok(Self(symmetric_part(&matrix)))
+    }
+
     /// The principal moments, kg m², the smallest first.
     #[must_use]
     pub fn principal_moments(&self) -> Vector3<T> {
@@ -288,8 +325,21 @@ fn symmetric_part<T: RealField + Copy>(matrix: &Matrix3<T>) -> Matrix3<T> {
     (matrix + matrix.transpose()) * real::<T>(0.5)
 }
 
+/// The bodies that an inertia may be that of.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// A rigid body: `J_d` is positive semidefinite.
+    Rigid,
+    /// Any for which `J` is positive definite.
+    Effective,
+}
+
 /// Checks that a nonstandard inertia `J_d` is that of a rigid body, and symmetrises it.
 fn check<T: RealField + Copy>(nonstandard: &Matrix3<T>) -> Result<Matrix3<T>, InertiaError> {
+    checked(nonstandard, Kind::Rigid)
+}
+
+fn checked<T: RealField + Copy>(nonstandard: &Matrix3<T>, kind: Kind) -> Result<Matrix3<T>, InertiaError> {
     if !nonstandard.iter().all(|&entry| crate::numbers::is_finite(entry)) {
         return Err(InertiaError::NotFinite);
     }
@@ -310,7 +360,7 @@ fn check<T: RealField + Copy>(nonstandard: &Matrix3<T>) -> Result<Matrix3<T>, In
     let symmetric = symmetric_part(nonstandard);
     let mut eigenvalues = symmetric.symmetric_eigenvalues();
     eigenvalues.as_mut_slice().sort_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
-    if eigenvalues[0] < -rounding {
+    if eigenvalues[0] < -rounding && kind == Kind::Rigid {
         return Err(InertiaError::TriangleInequality { smallest: reported(eigenvalues[0]) });
     }
     let smallest_moment = eigenvalues[0] + eigenvalues[1];

@@ -24,14 +24,6 @@ use crate::mechanics::term::Term;
     note = "a force does work: the energy isn't kept, and a step back doesn't undo a step"
 )]
 pub trait DiscreteLagrangian: Effect {
-    /// Whether `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)` for all values of the parameters.
-    ///
-    /// If so, a step of `−h` is the exact inverse of a step of `h`, the order is even (2 at least), and symmetric
-    /// compositions raise it; otherwise the order is 1 in general. The macro determines it, by normal forms or by
-    /// values at random points of a finite field. [`DERIVATION`](Effect::DERIVATION) states how, and whether it would
-    /// hold if vectors were declared as points. In an implementation by hand it is the author's claim.
-    const SELF_ADJOINT: bool;
-
     /// The declared `l_d(F, w)`, in J s.
     fn l_d(&self, f: &Matrix<Self>, w: &Self::Advected, h: Self::Scalar) -> Self::Scalar;
 

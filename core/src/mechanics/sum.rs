@@ -292,8 +292,6 @@ where
     A: DiscreteLagrangian,
     B: DiscreteLagrangian<Scalar = A::Scalar, Group = A::Group, Retraction = A::Retraction>,
 {
-    const SELF_ADJOINT: bool = A::SELF_ADJOINT && B::SELF_ADJOINT;
-
     added! {
         fn l_d(f: &Matrix<Self>, w, h: Self::Scalar) -> Self::Scalar;
         fn right_momentum(f: &Matrix<Self>, w, h: Self::Scalar) -> Vector<Self>;

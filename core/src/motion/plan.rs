@@ -1,7 +1,7 @@
 //! A method whose constants are folded for a scene and a step.
 
 use crate::error::{SetupError, StepError};
-use crate::groups::LieGroup;
+use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
     Effect, Group, Operations, Scalar, SceneVisitor, Vector, momentum_of_velocity, velocity_of_momentum,
 };
@@ -127,6 +127,46 @@ pub trait Plan<S: Effect>: Sized {
     ) -> Result<StepReport, StepError> {
         const { assert!(Self::STEPS_BY_RUNS, "a plan has neither: write `step`, or `run` with `STEPS_BY_RUNS = true`") }
         self.run(scene, motion, kept, 1).map(StepReport::of_run)
+    }
+
+    /// Makes one step with prescribed values. `values` returns the advected parameters in space in the middle of a part of the
+    /// step, which is given by its begin and its length as shares of the step; by default of the whole step. A plan with
+    /// stages of their own times asks for those of each.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`](Self::step) and of `values`.
+    #[hot]
+    fn step_seeing(
+        &self,
+        scene: &S,
+        motion: &mut MotionOf<S>,
+        kept: &mut Self::Kept,
+        values: &mut impl FnMut([Scalar<S>; 2]) -> Result<S::Advected, StepError>,
+    ) -> Result<StepReport, StepError> {
+        let seen = values([real(0.0), real(1.0)])?.seen_from(&motion.attitude);
+        self.see(motion, kept, seen);
+        self.step(scene, motion, kept)
+    }
+
+    /// The [`part`](Self::part) of such a step; by default all parts of a step have the values in its middle. The shares are
+    /// those of the step in the direction of the part.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`part`](Self::part) and of `values`.
+    fn part_seeing(
+        &self,
+        scene: &S,
+        motion: &MotionOf<S>,
+        kept: &Self::Kept,
+        fraction: Scalar<S>,
+        values: &mut impl FnMut([Scalar<S>; 2]) -> Result<S::Advected, StepError>,
+    ) -> Result<MotionOf<S>, StepError> {
+        let (mut now, mut kept) = (*motion, *kept);
+        let seen = values([real(0.0), real(1.0)])?.seen_from(&now.attitude);
+        self.see(&mut now, &mut kept, seen);
+        self.part(scene, &now, &kept, fraction)
     }
 
     /// Makes one step of another length, s, without counting it.

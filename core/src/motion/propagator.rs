@@ -63,7 +63,14 @@ pub trait Propagator {
     /// # Errors
     ///
     /// The errors of [`Stepper::run`](crate::Stepper::run).
-    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError>;
+    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
+        let (mut next, mut iterations) = (self.layout().checked(state)?.to_vec(), 0);
+        for _ in 0..steps {
+            iterations += u64::from(self.step(&mut next)?.iterations);
+        }
+        state.copy_from_slice(&next);
+        Ok(iterations)
+    }
 
     /// A run in stretches: `steps` steps first, then each time as many as `next` returns for the state reached and its time,
     /// s, until it returns 0; returns the number of all iterations. The memory in the states of `next` may be an older one.
@@ -209,6 +216,15 @@ impl Layout {
     pub fn state(&self) -> usize {
         self.memory().end + 1
     }
+
+    /// The state, if it has this layout's number of entries.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError::NonFinite`] of the "state of this layout".
+    pub fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
+        if state.len() == self.state() { Ok(state) } else { Err(StepError::NonFinite { what: "state of this layout" }) }
+    }
 }
 
 /// The result of a function on the state between both halves of a force's impulse over a step of this length. On an error
@@ -223,9 +239,7 @@ pub fn forced<R>(
     (force, length): (&[f64], f64),
     run: impl FnOnce(&mut [f64]) -> Result<R, StepError>,
 ) -> Result<R, StepError> {
-    if state.len() != layout.state() {
-        return Err(StepError::NonFinite { what: "state of this layout" });
-    }
+    layout.checked(state)?;
     if force.len() != layout.components() || !force.iter().all(|part| part.is_finite()) {
         return Err(StepError::NonFinite { what: "control force" });
     }

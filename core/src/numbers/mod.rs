@@ -27,6 +27,7 @@ pub(crate) mod elimination;
 mod entries;
 mod exact;
 mod history;
+mod identity;
 mod join;
 mod lanes;
 pub(crate) mod newton;
@@ -48,6 +49,8 @@ pub(crate) use entries::{entries_of_value, flag, of_tuples, replaced, sum, zero}
 pub use exact::two_sum;
 pub(crate) use exact::{carried_sum, two_square};
 pub(crate) use history::{History, Parabola, Polynomial};
+#[doc(hidden)]
+pub use identity::Identity;
 pub use join::{Join, Twice};
 pub use lanes::{InLanes, Lanes, Numbers};
 pub(crate) use newton::{NewtonEnd, newton_halving};

@@ -7,7 +7,7 @@ use crate::motion::{MotionOf, Plan, Steerable, StepReport, Stepper, SumsOf};
 use crate::numbers::real;
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
-/// A plan whose steps have prescribed values in their middles, by [`Stepper::driven`].
+/// A plan whose steps have prescribed values in their middles, or in those of their stages, by [`Stepper::driven`].
 #[derive(Clone, Copy, Debug)]
 #[doc(hidden)]
 pub struct Driven<P, V> {
@@ -22,8 +22,8 @@ impl<S: Effect, P: Plan<S> + Steerable> Stepper<S, P> {
     ///
     /// It is recorded, watched for events and evaluated between its steps as any other. A part of a step takes the
     /// values of the whole step, so that its parts join it to the next. A state has the values of its own time, and so
-    /// do its energy and velocity. The scheme is of second order in values that change smoothly, whatever the order of
-    /// the method.
+    /// do its energy and velocity. The scheme is of second order in values that change smoothly, and a
+    /// [composition](Self::composed) of its own order: each of its stages, in a part of a step too, takes the values in its middle.
     ///
     /// Substeps and compensated sums have to be added before: `stepper.or_substeps(8).driven(…)`. A checkpoint doesn't
     /// distinguish two functions.
@@ -92,9 +92,9 @@ where
 
     fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
         let (mut now, mut next) = (*motion.now(), *kept);
-        let length = self.plan.length(scene, &now, &next, true);
-        let end = self.see_middle((&mut now, &mut next), [length * real(0.5), length])?;
-        let made = self.plan.step(scene, &mut now, &mut next);
+        let (start, length) = (self.plan.time(&now, &next), self.plan.length(scene, &now, &next, true));
+        let end = self.value::<S>(start + length)?;
+        let made = self.plan.step_seeing(scene, &mut now, &mut next, &mut self.middles::<S>(start, length));
         let report = made.map_err(|error| self.plan.explained(error, scene, &now, &next))?;
         let seen = end.seen_from(&now.attitude);
         self.plan.see(&mut now, &mut next, seen);
@@ -103,7 +103,6 @@ where
         Ok(report)
     }
 
-    /// Takes the values in the middle of the whole step, so that all parts join it to the next.
     fn part(
         &self,
         scene: &S,
@@ -111,12 +110,12 @@ where
         kept: &P::Kept,
         fraction: Scalar<S>,
     ) -> Result<MotionOf<S>, StepError> {
-        let (mut now, mut kept) = (*motion, *kept);
-        let [ahead, back] = [true, false].map(|is_ahead| self.plan.length(scene, &now, &kept, is_ahead));
+        let [ahead, back] = [true, false].map(|is_ahead| self.plan.length(scene, motion, kept, is_ahead));
         let is_ahead = fraction.simd_ge(real(0.0));
-        let middle = ahead.select(is_ahead, -back) * real(0.5);
-        let end = self.see_middle((&mut now, &mut kept), [middle, ahead.select(is_ahead, back) * fraction])?;
-        let mut part = self.plan.part(scene, &now, &kept, fraction)?;
+        let (start, length) = (self.plan.time(motion, kept), ahead.select(is_ahead, -back));
+        let end = self.value::<S>(start + ahead.select(is_ahead, back) * fraction)?;
+        let values = &mut self.middles::<S>(start, length);
+        let mut part = self.plan.part_seeing(scene, motion, kept, fraction, values)?;
         part.advected = end.seen_from(&part.attitude);
         Ok(part)
     }
@@ -128,22 +127,24 @@ where
 }
 
 impl<P, V> Driven<P, V> {
-    /// Sets a plan's advected parameters to the values at the middle, and returns those at the end.
-    fn see_middle<S: Effect>(
-        &self,
-        (motion, kept): (&mut MotionOf<S>, &mut P::Kept),
-        [middle, end]: [Scalar<S>; 2],
-    ) -> Result<S::Advected, StepError>
+    /// The values at a time, if they are finite.
+    fn value<S: Effect>(&self, time: Scalar<S>) -> Result<S::Advected, StepError>
     where
-        P: Plan<S>,
-        V: Fn(Scalar<S>) -> S::Advected + Clone,
+        V: Fn(Scalar<S>) -> S::Advected,
     {
-        let start = self.plan.time(motion, kept);
-        let [middle, end] = [middle, end].map(|part| (self.values)(start + part));
-        if !(middle.is_finite() && end.is_finite()) {
-            return Err(StepError::NonFinite { what: "value given to the step" });
-        }
-        self.plan.see(motion, kept, middle.seen_from(&motion.attitude));
-        Ok(end)
+        let values = (self.values)(time);
+        if values.is_finite() { Ok(values) } else { Err(StepError::NonFinite { what: "value given to the step" }) }
+    }
+
+    /// The values in the middles of parts of a step of this start and length, s.
+    fn middles<S: Effect>(
+        &self,
+        start: Scalar<S>,
+        length: Scalar<S>,
+    ) -> impl FnMut([Scalar<S>; 2]) -> Result<S::Advected, StepError> + use<'_, P, V, S>
+    where
+        V: Fn(Scalar<S>) -> S::Advected,
+    {
+        move |[begin, share]| self.value::<S>(start + length * begin + length * share * real(0.5))
     }
 }

@@ -1,19 +1,21 @@
-//! Eight scenes of several bodies on one core: one after another, and in SIMD lanes. A step is one of all eight.
+//! Eight scenes of several bodies on one core: one after another, and in SIMD lanes. A step is one of all eight. Chains on ball
+//! joints: by the attitudes of their links, and as bodies with joints, in equal motions.
 //!
 //! Each of the eight has its own initial state. Their steps alone and in lanes agree, which is checked before the
-//! timing.
+//! timing, as the two kinds of chains do.
 
 use core::array::from_fn;
 use core::fmt::Debug;
 
-use declarations::{Alike, DoublePendulum, TopOnCart, TwoBodies};
+use declarations::{Alike, DoublePendulum, FallingBody, TopOnCart, TwoBodies};
 use liestep::effects::PrincipalBody;
 use liestep::groups::{R2, R3};
 use liestep::mechanics::{Along, DiagonalNonstandardInertia, Each};
+use liestep::methods::{Chain, Joint, Link, Multibody};
 use liestep::motion::{Batch, Batchable, Integrator};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, Stepper};
-use nalgebra::{SVector, Vector2, Vector3};
+use nalgebra::{SVector, Vector2, Vector3, Vector6};
 use simba::simd::AutoF64x8;
 
 use crate::kernel::{Effort, Failure, Group, Kernel};
@@ -85,6 +87,57 @@ fn row<const N: usize>() -> Group {
     })
 }
 
+/// Rods of one metre on ball joints from a pivot, by their attitudes and by places and joints. They start bent and turning.
+fn chain<const N: usize>() -> Group {
+    const END: Vector3<f64> = Vector3::new(0.0, 0.0, -0.5);
+    let inertia = || NonstandardInertia::from_principal_moments(Vector3::new(0.09, 0.08, 0.02));
+    let turns = || from_fn::<_, N, _>(|body| turn(body % 5, body % 3));
+    let velocities = || from_fn::<_, N, _>(|body| velocity::<3>(body % 5) * 0.2);
+    let ready = move || {
+        let central = inertia()?;
+        let J_d = NonstandardInertia::new(central.as_matrix() + END * END.transpose())?;
+        let links = [Link { J_d, m: 1.0, c: END, rho: END * 2.0 }; N];
+        let stepper = Chain { links, g: 9.81, up: Vector3::z() }.stepper(STEP)?;
+        let state = stepper.start(turns(), Bodies(velocities()))?;
+        Ok::<_, Failure>((stepper, state))
+    };
+    let bodies = move || {
+        let mut system = Multibody::new();
+        let (mut end, mut moving, mut places, mut velocity) = (Vector3::zeros(), Vector3::zeros(), vec![], vec![]);
+        for (attitude, turning) in turns().into_iter().zip(velocities()) {
+            let body = system.body(FallingBody { m: 1.0, J_d: inertia()?, g: 9.81, up: Vector3::z() });
+            let above = body.checked_sub(1);
+            let point = if above.is_some() { END } else { Vector3::zeros() };
+            system.join(Joint::ball([point, -END]), above, body);
+            let (along, across) = (attitude.as_matrix() * END, attitude.as_matrix() * turning.cross(&END));
+            places.push((attitude, R3::from(end + along)));
+            let shift = moving + across;
+            velocity.push(Vector6::from_fn(|k, _| if k < 3 { turning[k] } else { shift[k - 3] }));
+            (end, moving) = (end + along * 2.0, moving + across * 2.0);
+        }
+        let stepper = system.stepper(STEP)?;
+        let state = stepper.start(&places, &velocity)?;
+        Ok::<_, Failure>((stepper, state))
+    };
+    let by_attitudes = Kernel::new("links", move || {
+        let (stepper, mut state) = ready()?;
+        Ok(move |steps| Ok(stepper.run(&mut state, steps.into())?))
+    });
+    let by_joints = Kernel::new("bodies and joints", move || {
+        let ((chain, mut links), (stepper, mut state)) = (ready()?, bodies()?);
+        let mut other = state.clone();
+        for _ in 0..20 {
+            chain.step(&mut links)?;
+            stepper.step(&mut other)?;
+        }
+        let apart =
+            |body: usize| (links.attitude()[body].as_matrix() - stepper.attitude(&other, body).0.as_matrix()).amax();
+        assert!((0..N).map(apart).fold(0.0, f64::max) < 1e-11, "the chains have other motions");
+        Ok(move |steps| Ok(stepper.run(&mut state, steps.into())?))
+    });
+    Group::new(format!("chain of {N}"), Effort { batch: 200, rounds: 20, counted: 100 }, [by_attitudes, by_joints])
+}
+
 pub(crate) fn groups() -> Vec<Group> {
     let pendulum = |number| {
         let stepper = Stepper::new(DoublePendulum::asymmetric(), STEP)?;
@@ -111,5 +164,6 @@ pub(crate) fn groups() -> Vec<Group> {
         Ok((stepper, state))
     };
     let small = [group("double pendulum", pendulum), group("top on a cart", cart), group("two-body problem", two)];
-    small.into_iter().chain([row::<4>(), row::<32>()]).collect()
+    let many = [row::<4>(), row::<32>(), chain::<5>(), chain::<20>(), chain::<100>()];
+    small.into_iter().chain(many).collect()
 }

@@ -3,7 +3,7 @@
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop};
 use liestep::mechanics::{DiagonalNonstandardInertia, Effect as _, Inertia, InertiaError};
-use liestep::{NonstandardInertia, SetupError, Stepper};
+use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
 
@@ -44,6 +44,40 @@ fn diagonals_and_principal_moments() {
     assert_eq!(principal, DiagonalNonstandardInertia::from_principal_moments(moments).unwrap());
     assert_eq!(full.to_inertia(), Inertia::from_principal_moments(moments).unwrap());
     assert_eq!(full.to_inertia().as_matrix().diagonal(), moments);
+}
+
+/// The velocity of a free body after a time, by Runge–Kutta steps of Euler's equations.
+fn by_euler(moments: &Vector3<f64>, velocity: Vector3<f64>, time: f64) -> Vector3<f64> {
+    let rate = |w: Vector3<f64>| moments.component_mul(&w).cross(&w).component_div(moments);
+    let h = time / 2000.0;
+    (0..2000).fold(velocity, |w, _| {
+        let a = rate(w);
+        let b = rate(w + a * (h / 2.0));
+        let c = rate(w + b * (h / 2.0));
+        w + (a + (b + c) * 2.0 + rate(w + c * h)) * (h / 6.0)
+    })
+}
+
+/// Moments of a space agency's demonstration, which no rigid body has: refused, and of order two where they are effective.
+#[test]
+fn b13_an_effective_inertia_is_that_of_no_rigid_body() {
+    let (moments, start) = (Vector3::new(5174.0, 3593.0, 245.4), Vector3::new(0.02, 0.5, 0.03));
+    assert!(Inertia::from_principal_moments(moments).is_err());
+    let J = Inertia::effective(Matrix3::from_diagonal(&moments)).unwrap();
+    let principal = DiagonalNonstandardInertia::effective(moments).unwrap();
+    assert_eq!(principal.to_matrix(), *J.to_nonstandard().as_matrix());
+    let error = |steps: u32| {
+        let stepper = Stepper::new(FreeBody { J_d: J.to_nonstandard() }, 10.0 / f64::from(steps)).unwrap();
+        let mut state = stepper.start(SO3::identity(), start).unwrap();
+        stepper.run(&mut state, steps.into()).unwrap();
+        (stepper.velocity(&state) - by_euler(&moments, start, 10.0)).norm()
+    };
+    let order = (error(500) / error(1000)).log2();
+    assert!((order - 2.0).abs() < 0.01, "{order}");
+    for impossible in [Vector3::new(5.0, 3.0, 0.0), Vector3::new(5.0, -3.0, 1.0), Vector3::new(f64::NAN, 1.0, 1.0)] {
+        assert!(Inertia::effective(Matrix3::from_diagonal(&impossible)).is_err(), "{impossible}");
+        assert!(DiagonalNonstandardInertia::effective(impossible).is_err(), "{impossible}");
+    }
 }
 
 fn nonstandard(diagonal: [f64; 3]) -> Result<Vector3<f64>, InertiaError> {

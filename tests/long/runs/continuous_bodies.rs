@@ -6,7 +6,7 @@ use checks::structure::equations::assert_equations;
 use declarations::DoublePendulum;
 use declarations::motions::{number, read, vector};
 use liestep::groups::{Advected as _, Configuration, LieGroup as _, R1, R3, Relative, SeenFrom};
-use liestep::mechanics::{ContinuousLagrangian, DiscreteLagrangian, Inertia, Legendre, Term};
+use liestep::mechanics::{ContinuousLagrangian, Effect, Inertia, Legendre, Term};
 use liestep::motion::RightHandSide;
 use liestep::numbers::Real;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
@@ -134,7 +134,7 @@ fn the_diamond_along_all_matrices_of_each_body() {
 #[test]
 fn steps_of_bodies_that_feel_each_other() {
     let system = bodies::<f64>(3);
-    const { assert!(<Bodies<f64> as DiscreteLagrangian>::SELF_ADJOINT) };
+    const { assert!(<Bodies<f64> as Effect>::FACTS.is_self_adjoint) };
     let mut random = Random::new(31);
     let attitude = (random.rotation(), R3::identity(), random.rotation(), R1::identity());
     let velocity = Components::from_fn(|_, _| random.signed());
@@ -189,7 +189,7 @@ impl Links {
 fn two_links_are_the_limit_of_their_steps() {
     let pendulum = DoublePendulum::asymmetric();
     let links = Links::of(&pendulum);
-    const { assert!(Links::SELF_ADJOINT && matches!(Links::LEGENDRE, Legendre::Varying)) };
+    const { assert!(<Links as Effect>::FACTS.is_self_adjoint && matches!(Links::LEGENDRE, Legendre::Varying)) };
     let mut random = Random::new(7);
     for _ in 0..20 {
         let attitudes = (random.rotation(), random.rotation());

@@ -4,7 +4,7 @@
 use checks::structure::reversal;
 use liestep::groups::{CovariantTensor, LieGroup as _, SE3, SL2};
 use liestep::lagrangian;
-use liestep::mechanics::DiscreteLagrangian;
+use liestep::mechanics::Effect as _;
 use nalgebra::{Matrix2, Matrix3, Matrix4, Point3, Vector3, Vector4};
 use workbench::measure::order;
 
@@ -47,7 +47,7 @@ struct OneSidedElasticFlow {
 }
 
 // A composition takes only self-adjoint declarations, by a constant at compile time: these aren't self-adjoint.
-const _: () = assert!(!OneSidedUnderwaterBody::SELF_ADJOINT && !OneSidedElasticFlow::SELF_ADJOINT);
+const _: () = assert!(!OneSidedUnderwaterBody::FACTS.is_self_adjoint && !OneSidedElasticFlow::FACTS.is_self_adjoint);
 
 fn assert_first_order(errors: &[(f64, f64)]) {
     let order = order(errors, PLATEAU);

@@ -36,7 +36,7 @@ fn compensated_collocation() {
 }
 
 fn composition_of_a_damped_scene(body: RigidBody, drag: Drag) {
-    let _ = Stepper::composed(body + drag, 0.01, CompositionScheme::KAHAN_LI_8);
+    let _ = Stepper::composed(body + drag, 0.01, CompositionScheme::KAHAN_LI_8); // is right: steps of −h undo drag
 }
 
 fn force_alone() {

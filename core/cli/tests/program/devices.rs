@@ -64,12 +64,13 @@ fn integrated() -> ([f64; 4], [f64; 3], [f64; 3]) {
     ([y[0], y[1], y[2], y[3]], [y[4], y[5], y[6]], speeds)
 }
 
+/// By the scene's own step and by a composition, whose stages have the wheels' momenta of their own times.
 #[test]
 fn three_wheels_exchange_momentum_with_the_body() {
     let folder = folder("three_wheels_exchange_momentum_with_the_body");
     let (q, turn, speeds) = integrated();
-    let error = |step: f64| {
-        let rows = rows(&folder, &three_wheels(step));
+    let error = |method: &str, step: f64| {
+        let rows = rows(&folder, &three_wheels(step).replace("[output]", &format!("{method}\n[output]")));
         let first = Vector3::new(rows[0][8], rows[0][9], rows[0][10]);
         for row in &rows {
             // The momentum in space of body and wheels, to rounding.
@@ -84,9 +85,48 @@ fn three_wheels_exchange_momentum_with_the_body() {
         };
         [turned, apart(5, turn), apart(11, speeds)]
     };
-    let [coarse, fine] = [error(0.02), error(0.01)];
-    for (coarse, fine) in coarse.iter().zip(fine) {
-        assert!(fine < 1e-3 && (3.8..4.2).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
+    let of_order = |method: &str, order: f64, steps: [f64; 2]| {
+        let [coarse, fine] = steps.map(|step| error(method, step));
+        for (coarse, fine) in coarse.iter().zip(fine) {
+            assert!(fine < 1e-3 && ((coarse / fine).log2() - order).abs() < 0.1, "{method}: {coarse:e} {fine:e}");
+        }
+    };
+    of_order("", 2.0, [0.02, 0.01]);
+    of_order("method = { composition = \"Suzuki 4\" }", 4.0, [0.2, 0.1]);
+}
+
+/// A Lagrangian of the file's own has laws, wheels and torques as a body of the library has.
+#[test]
+fn own_lagrangians_have_laws_and_wheels() {
+    let folder = folder("own_lagrangians_have_laws_and_wheels");
+    let scene = |body: &str, start: &str| {
+        format!(
+            "title = \"Own\"\n{body}\n[torque]\ntorque = [0.01, 0, -0.02]\n[start]\nquaternion = [0.8, 0.1, -0.5, \
+             0.3]\n{start}\n[run]\nduration = 4\nstep = 0.1\n[output]\ncolumns = [\"quaternion\", \"velocity\", \
+             \"control\", \"wheel-speeds\", \"energy\"]\nevery = 1\n[[control]]\ntorque = \"-0.3 * q - 0.5 * Omega\"\nevery \
+             = 0.2\n[[wheel]]\naxis = [0, 0.6, 0.8]\ninertia = 0.02\nspeed = 30\ntorque = \"0.1 * Omega[1]\"\n"
+        )
+    };
+    let lagrangian = |text: &str| format!("[lagrangian]\n{text}\n");
+    for (kinetic, own) in [
+        ("rigid", "l_d = \"((F - I) * J_d * (F - I).transpose()).trace() / (2 * h)\"\nJ_d = { moments = [1, 2, 2.5] }"),
+        (
+            "cayley",
+            "velocity = \"Omega\"\ndiscretise = \"trapezoid(Cayley)\"\nl = \"Omega.dot(J * Omega) / 2\"\nJ = { moments \
+             = [1, 2, 2.5] }",
+        ),
+    ] {
+        let body = format!("[body]\nmoments = [1, 2, 2.5]\nkinetic = \"{kinetic}\"");
+        // The momentum of that velocity: J Ω + I (Ω·a + speed) a, where J is without the wheel.
+        let turn = Vector3::new(0.3, -0.2, 0.5);
+        let along = axes()[1];
+        let momentum = Vector3::new(1.0, 2.0, 2.5).component_mul(&turn) + along * (0.02 * (turn.dot(&along) + 30.0));
+        let starts = ["velocity = [0.3, -0.2, 0.5]".to_owned(), format!("momentum = {:?}", momentum.as_slice())];
+        let expected = rows(&folder, &scene(&body, &starts[0]));
+        for start in &starts {
+            let apart = crate::called::apart(&rows(&folder, &scene(&lagrangian(own), start)), &expected);
+            assert!(apart < 1e-11, "{kinetic}, {start}: {apart:e}");
+        }
     }
 }
 
@@ -135,6 +175,36 @@ fn a_law_with_limits_settles_at_torque_over_gain() {
     }
 }
 
+/// A law at both ends of each step has the order of the method: a spin against `−k Ω` falls as `e^{−kt/J}`, and a tumbling body is
+/// turned to its target as by short steps of order eight.
+#[test]
+fn a_law_at_both_ends_has_the_order_of_the_method() {
+    let folder = folder("a_law_at_both_ends_has_the_order_of_the_method");
+    let end = |start: &str, law: &str, step: f64, method: &str| {
+        let text = format!(
+            "title = \"Ends\"\n[body]\nmoments = [1, 2, 3]\nkinetic = \"geodesic\"\n[start]\neuler = [0, 0, 0]\nvelocity = \
+             {start}\n[run]\nduration = 4\nstep = {step:?}\n{method}\n[output]\ncolumns = [\"velocity\", \"quaternion\"]\n\
+             [[control]]\ntorque = \"{law}\"\nat = \"both ends\"\n"
+        );
+        rows(&folder, &text).pop().unwrap()[1..].to_vec()
+    };
+    let composed = |name: &str| format!("method = {{ composition = \"{name}\" }}");
+    let (spin, tumbling) = ("[0, 0, 1.5]", "[1.2, -0.8, 0.5]");
+    let (brake, turn) = ("-0.9 * Omega", "-1.5 * q - 0.8 * Omega - 0.2 * [q[0] * q[1], 0, t / 4]");
+    let exact = end(tumbling, turn, 0.02, &composed("Kahan-Li 8"));
+    for (method, order) in [(String::new(), 2.0), (composed("Suzuki 4"), 4.0)] {
+        let spun = |step| (end(spin, brake, step, &method)[2] - 1.5 * (-0.9_f64 * 4.0 / 3.0).exp()).abs();
+        let turned = |step| {
+            let apart = end(tumbling, turn, step, &method);
+            apart.iter().zip(&exact).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+        };
+        for error in [&spun as &dyn Fn(f64) -> f64, &turned] {
+            let [coarse, fine] = [0.1, 0.05].map(error);
+            assert!(((coarse / fine).log2() - order).abs() < 0.15, "{method}: {coarse:e} {fine:e}");
+        }
+    }
+}
+
 /// A law of a wheel reads the body: it turns a body to the local vertical, and takes its momentum over.
 #[test]
 fn a_wheel_holds_a_body_at_the_local_vertical() {
@@ -164,59 +234,6 @@ fn a_wheel_holds_a_body_at_the_local_vertical() {
     }
 }
 
-/// A torque `m × b` with `m = −k ḃ` by two readings of the field, whose change along the orbit is in them.
-#[test]
-fn two_readings_of_a_field_are_its_rate() {
-    let folder = folder("two_readings_of_a_field_are_its_rate");
-    let (period, k, J) = (5801.23, 1e4, Vector3::new(0.9, 0.9, 0.3));
-    let rate = std::f64::consts::TAU / period;
-    let equator = Vector3::new(0.0, 0.0, 3.1e-5);
-    // A circle through the poles, in the plane of x and z.
-    let place = |t: f64| Vector3::new((rate * t).cos(), 0.0, (rate * t).sin());
-    let field = |t: f64| equator - place(t) * (3.0 * equator.dot(&place(t)));
-    let changed = |t: f64| (field(t + 1e-2) - field(t - 1e-2)) / 2e-2;
-    let f = |t: f64, y: &SVector<f64, 7>| {
-        let q = Quaternion::new(y[0], y[1], y[2], y[3]);
-        let R = UnitQuaternion::new_normalize(q).to_rotation_matrix();
-        let turn = Vector3::new(y[4], y[5], y[6]);
-        let b = R.inverse() * field(t);
-        let rate = R.inverse() * changed(t) - turn.cross(&b);
-        let torque = (-k * rate).cross(&b);
-        let spun = (torque - turn.cross(&J.component_mul(&turn))).component_div(&J);
-        let q = q * Quaternion::from_imag(turn) * 0.5;
-        SVector::from_iterator([q.w, q.i, q.j, q.k].into_iter().chain(spun.iter().copied()))
-    };
-    let start = 20_f64.to_radians();
-    let mut y = SVector::<f64, 7>::from_column_slice(&[1.0, 0.0, 0.0, 0.0, start, start, start]);
-    let h = 0.02;
-    for step in 0..30_000 {
-        let t = f64::from(step) * h;
-        let a = f(t, &y);
-        let b = f(t + h / 2.0, &(y + a * (0.5 * h)));
-        let c = f(t + h / 2.0, &(y + b * (0.5 * h)));
-        let d = f(t + h, &(y + c * h));
-        y += (a + (b + c) * 2.0 + d) * (h / 6.0);
-    }
-    let expected = Vector3::new(y[4], y[5], y[6]).norm();
-    let text = |every: f64| {
-        format!(
-            "title = \"Detumbling\"\n[body]\nmoments = [0.9, 0.9, 0.3]\nkinetic = \"geodesic\"\n[start]\neuler = [0, 0, \
-             0]\nvelocity = [\"20 deg/s\", \"20 deg/s\", \"20 deg/s\"]\n[orbit]\nperiod = {period}\nnormal = [0, -1, 0]\n\
-             [run]\nduration = 600\nstep = {every}\n[output]\ncolumns = [\"velocity\"]\n[[control]]\ntorque = \
-             \"(-k / every * (b - b_before)).cross(b)\"\nk = {k:?}\nB = {{ equator = [0, 0, \"31 µT\"] }}\nadvected = {{ b = \
-             \"B\" }}\n"
-        )
-    };
-    let error = |every: f64| {
-        let end = rows(&folder, &text(every)).pop().unwrap();
-        Vector3::new(end[1], end[2], end[3]).norm() - expected
-    };
-    // A difference of readings is late by half the time between them. The torque is across the field, and a delay turns it
-    // about the axis of the spin, so that the speed is of second order.
-    let [coarse, fine] = [error(0.1), error(0.05)];
-    assert!(fine.abs() < 0.01 * expected && (3.8..4.2).contains(&(coarse / fine)), "{coarse:e} {fine:e} {expected}");
-}
-
 /// Mistakes have their place.
 #[test]
 fn mistakes_of_laws_and_wheels_have_their_place() {
@@ -243,6 +260,10 @@ fn mistakes_of_laws_and_wheels_have_their_place() {
         (law("-b", "advected = { b = \"B\" }\nB = { equator = [0, 0, 1] }"), "no table `[orbit]`"),
         (law("-Omega", "relative_to = \"local vertical\""), "no table `[orbit]`"),
         (law("-Omega", "largest = -1"), "a torque above zero for all axes"),
+        (law("-Omega", "at = \"the end\""), "12:6: a law is held from sample to sample"),
+        (law("-Omega", "at = \"both ends\"\nevery = 0.1"), "13:9: a law at both ends of each step has no samples"),
+        (law("-every * Omega", "at = \"both ends\""), "unknown name `every`"),
+        (wheel("torque = \"Omega[2]\"\nat = \"both ends\""), "the law of a wheel is held"),
         ("[[control]]\ntorque = [0, 0, 1]\n".to_owned(), "is a text"),
         (wheel("torque = \"Omega\""), "the torque of a wheel is a number"),
         (wheel("spin = 1"), "13:1: unknown field `spin`"),
@@ -270,7 +291,7 @@ fn mistakes_of_laws_and_wheels_have_their_place() {
     }
     for (run, message) in [
         ("accuracy = 1e-3", "beside a `step`"),
-        ("step = 0.1\nmethod = { composition = \"Suzuki 4\" }", "the scene's own step"),
+        ("step = 0.1\nmethod = { splitting = \"Strang\" }", "the scene's own step or a composition of it"),
     ] {
         let text = format!(
             "title = \"A law\"\n[body]\nmoments = [1, 1, 1]\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 0, 1]\n[run]\nduration = \
@@ -279,24 +300,6 @@ fn mistakes_of_laws_and_wheels_have_their_place() {
         fs::write(folder.join("scene.toml"), &text).unwrap();
         let told = String::from_utf8(called(&folder, &["check", "scene.toml"]).stderr).unwrap();
         assert!(told.contains(message), "{run}: {told}");
-    }
-}
-
-/// The nadir that a law reads has the length one wherever the planet is, and is its direction: at rest in space, after half a
-/// turn from pericentre to apocentre, the opposite one.
-#[test]
-fn a_law_reads_a_unit_vector_of_the_nadir() {
-    let folder = folder("a_law_reads_a_unit_vector_of_the_nadir");
-    let text = "title = \"Nadir\"\n[body]\nmoments = [1e9, 1e9, 1e9]\n[orbit]\nperiod = 6000\nnormal = [0, 0, 1]\n\
-                eccentricity = 0.6\n[start]\neuler = [0, 0, 0]\nvelocity = [0, 0, 0]\n[run]\nduration = 3010\nstep = \
-                10\n[output]\ncolumns = [\"control\"]\nevery = 1\n[[control]]\ntorque = \"1e-6 * n\"\nadvected = { n = \
-                \"planet\" }\nplanet = \"nadir\"\n";
-    let rows = rows(&folder, text);
-    for (row, direction) in [(&rows[1], -1.0), (&rows[301], 1.0)] {
-        assert!((row[1] * 1e6 - direction).abs() < 1e-5 && row[2].abs() < 1e-10 && row[3].abs() < 1e-13, "{row:?}");
-    }
-    for row in &rows[1..] {
-        assert!((row[1].hypot(row[2]).hypot(row[3]) * 1e6 - 1.0).abs() < 1e-12, "{row:?}");
     }
 }
 

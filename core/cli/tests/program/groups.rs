@@ -93,6 +93,76 @@ fn geodesics_on_the_librarys_groups() {
     }
 }
 
+/// Geodesics of a metric that couples the factors of a product, against the structure constants of both.
+#[test]
+fn geodesics_on_products() {
+    let groups: [(&str, Generators, &str, Generators); 4] = [
+        ("SE2", library::<SE2<f64>>(), "SL2", library::<SL2<f64>>()),
+        ("SU2", library::<SU2<f64>>(), "Heisenberg", library::<Heisenberg<f64>>()),
+        ("SE3", library::<SE3<f64>>(), "SO3", library::<SO3<f64>>()),
+        ("SO3", library::<SO3<f64>>(), "SE2", library::<SE2<f64>>()),
+    ];
+    for (first, A, second_name, B) in groups {
+        let ([m, n], [K, M]) = ([A.len(), B.len()], [metric(A.len()), metric(B.len())]);
+        let mut whole = blocks(&[&K, &M]);
+        (whole[(0, m + 1)], whole[(m + 1, 0)]) = (0.3, 0.3);
+        let xi: Vec<f64> = moving(m + n).iter().map(|part| 3.0 * part).collect();
+        let text = format!(
+            "[lagrangian]\ngroup = {{ A = \"{first}\", B = \"{second_name}\" }}\nvelocity = [\"xi\", \"eta\"]\n\
+             discretise = \"trapezoid(Cayley)\"\nl = \"xi.dot(K * xi) / 2 + eta.dot(M * eta) / 2 + c * xi[0] * eta[1]\"\n\
+             K = {}\nM = {}\nc = 0.3\n[start]\nA = {{ velocity = {:?} }}\nB = {{ velocity = {:?} }}\n",
+            written(&K),
+            written(&M),
+            &xi[..m],
+            &xi[m..]
+        );
+        let [momentum, defect] = drifts(&second(&text, "", 100), m + n);
+        assert!(momentum < 1e-14 && defect < 1e-13, "{first}, {second_name}: {momentum:e} {defect:e}");
+        let generators = product(&[A, B]);
+        let rows = generators[0].nrows();
+        let reference = Reference::free(&generators, whole);
+        assert_orders(
+            &format!("{first} x {second_name}"),
+            &text,
+            &reference.end(DMatrix::identity(rows, rows), &xi, 1.0, 400).1,
+        );
+    }
+}
+
+/// A body in space whose weight depends on the direction of a wheel's axis, which it doesn't touch: SE(3) × SO(3) by factors.
+#[test]
+fn a_body_in_space_and_a_wheel() {
+    let text = r#"[lagrangian]
+group = { F = "SE3", Q = "SO3" }
+advected = { w = "height.seen_from(F)", u = "up.seen_from(Q)" }
+l_d = """
+((F - I) * K * (F - I).transpose()).trace() / (2 * h) + ((Q - I) * J * (Q - I).transpose()).trace() / (2 * h)
+  - h / 2 * (w.dot(weight) * (1 + c * u.z) + (F.transpose() * w).dot(weight) * (1 + c * (Q.transpose() * u).z))"""
+K = [[2, 0.1, 0, 0.2], [0.1, 1.5, 0, 0], [0, 0, 1.1, 0], [0.2, 0, 0, 1.3]]
+J = [[0.3, 0, 0.02], [0, 0.4, 0], [0.02, 0, 0.5]]
+c = 0.4
+weight = [0.3, -0.2, 0.4, 3]
+height = [0, 0, 1, 0]
+up = [0, 0, 1]
+[start]
+F = { euler = [0, 0, 0], position = [0, 0, 1], velocity = [0.3, -0.7, 1.1, 0.2, 0.5, -0.4] }
+Q = { euler = [0, 0, 0], velocity = [0.9, 0.4, -2] }
+"#;
+    let K = [2.0, 0.1, 0.0, 0.2, 0.1, 1.5, 0.0, 0.0, 0.0, 0.0, 1.1, 0.0, 0.2, 0.0, 0.0, 1.3];
+    let (K, J) = (DMatrix::from_row_slice(4, 4, &K), [0.3, 0.0, 0.02, 0.0, 0.4, 0.0, 0.02, 0.0, 0.5]);
+    let generators = product(&[poses(4), turns()]);
+    let kinetic = of_traces(&generators, &blocks(&[&K, &DMatrix::from_row_slice(3, 3, &J)]));
+    let potential = |g: &DMatrix<f64>| {
+        let weight: f64 = (0..4).map(|k| g[(2, k)] * [0.3, -0.2, 0.4, 3.0][k]).sum();
+        weight * (1.0 + 0.4 * g[(6, 6)])
+    };
+    let reference = Reference { bias: DVector::zeros(9), generators: &generators, kinetic, potential: &potential };
+    let mut g = DMatrix::identity(7, 7);
+    g[(2, 3)] = 1.0;
+    let (_, exact) = reference.end(g, &[0.3, -0.7, 1.1, 0.2, 0.5, -0.4, 0.9, 0.4, -2.0], 1.0, 400);
+    assert_orders("a body in space and a wheel", text, &exact);
+}
+
 /// Three bodies that see each other by potentials of their relative attitudes: orders, and the sum of their momenta.
 #[test]
 fn three_bodies_that_see_each_other() {

@@ -67,26 +67,41 @@ fn own_terms_follow_an_orbit() {
     assert!(apart(&by_clock(&own), &by_clock(&listed)) < 1e-11);
 }
 
-/// Each stage of a composition has the direction and the field of its own time.
+/// Each stage of a composition has the direction and the field of its own time, also beside forces, whose ends change places
+/// as those of a step do.
 #[test]
 fn compositions_along_an_orbit_have_their_order() {
     let folder = folder("compositions_along_an_orbit_have_their_order");
-    let end = |steps: u32, method: &str| {
-        let orbit = ORBIT.replace("eccentricity = 0.1", "eccentricity = 0.2");
-        let text = satellite(&format!("{GRADIENT}{DIPOLE}{orbit}"), steps, method);
-        rows(&folder, &text).pop().unwrap()[1..8].to_vec()
-    };
-    let exact = end(800, "method = { composition = \"Kahan-Li 8\" }");
-    for (method, order, steps) in [("", 2.0, [400, 800]), ("method = { composition = \"Suzuki 4\" }", 4.0, [60, 120])] {
-        let error = |steps: u32| {
-            let end = end(steps, method);
-            // The scale of velocities is that of the orbit.
-            let scale = |at: usize| if at < 4 { 1.0 } else { 1e3 };
-            end.iter().zip(&exact).enumerate().map(|(at, (a, b))| ((a - b) * scale(at)).powi(2)).sum::<f64>().sqrt()
+    let drag = "[drag]\nc = 0.05\n[air_drag]\nc = 0.03\nair = \"orbit\"\n";
+    let damping = "[magnetic_damping]\nk = 1e7\n[magnetic_damping.field]\nequator = [\"2 µT\", \"5 µT\", \"25 µT\"]\n";
+    let own = "[force]\nwork = \"h * c * tau.dot(eta + eta_next) / 2 - c * vee(F).dot(eta + eta_next) / 2\"\nc = 0.02\ntau = [1e-4, \
+               2e-4, -1e-4]\n";
+    for forces in [String::new(), drag.to_owned(), format!("{drag}{damping}{own}")] {
+        let end = |steps: u32, method: &str| {
+            let orbit = ORBIT.replace("eccentricity = 0.1", "eccentricity = 0.2");
+            let text = satellite(&format!("{GRADIENT}{DIPOLE}{forces}{orbit}"), steps, method);
+            rows(&folder, &text).pop().unwrap()[1..8].to_vec()
         };
-        let measured = (error(steps[0]) / error(steps[1])).log2();
-        assert!((measured - order).abs() < 0.05, "{method}: {measured}");
+        let exact = end(800, "method = { composition = \"Kahan-Li 8\" }");
+        for (method, order, steps) in
+            [("", 2.0, [400, 800]), ("method = { composition = \"Suzuki 4\" }", 4.0, [60, 120])]
+        {
+            let error = |steps: u32| {
+                let end = end(steps, method);
+                // The scale of velocities is that of the orbit.
+                let scale = |at: usize| if at < 4 { 1.0 } else { 1e3 };
+                let parts = end.iter().zip(&exact).enumerate();
+                parts.map(|(at, (a, b))| ((a - b) * scale(at)).powi(2)).sum::<f64>().sqrt()
+            };
+            let measured = (error(steps[0]) / error(steps[1])).log2();
+            assert!((measured - order).abs() < 0.05, "{method} beside {forces}: {measured}");
+        }
     }
+    // A force at one end has no step back.
+    let one_sided = "[force]\nwork = \"h * tau.dot(eta)\"\ntau = [1e-4, 2e-4, -1e-4]\n";
+    let text = satellite(&format!("{GRADIENT}{one_sided}{ORBIT}"), 60, "method = { composition = \"Suzuki 4\" }");
+    let told = refused(&folder, &text);
+    assert!(told.contains("those with this `force` don't"), "{told}");
 }
 
 #[test]

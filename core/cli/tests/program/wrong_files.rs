@@ -153,6 +153,17 @@ fn what_is_printed() {
     }
 }
 
+/// XML has no letters U+FFFE and U+FFFF, not even escaped.
+#[test]
+fn a_title_with_letters_that_no_picture_may_have() {
+    let folder = folder("title");
+    let title = TOP.lines().find(|line| line.starts_with("title")).unwrap();
+    fs::write(folder.join("top.toml"), TOP.replace(title, "title = \"a\\uFFFEb\\uFFFFc\"")).unwrap();
+    printed(&folder, &["run", "top.toml", "--out", "."]);
+    let picture = fs::read_to_string(folder.join("top.svg")).unwrap();
+    assert!(picture.contains("a\\u{fffe}b\\u{ffff}c") && !picture.contains(['\u{fffe}', '\u{ffff}']));
+}
+
 /// Control characters in keys, units and file names don't reach the terminal.
 #[test]
 fn control_characters_in_mistakes_are_written_out() {

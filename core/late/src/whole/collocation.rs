@@ -86,9 +86,6 @@ struct Change {
 const WITH_A_FORCE: SetupError =
     SetupError::Method { cause: "needs a scene without a force; leave the method out, or the force" };
 
-/// A state of another layout.
-const OF_THIS_LAYOUT: StepError = StepError::NonFinite { what: "state of this layout" };
-
 impl<B: Backend<f64>> Collocation<B>
 where
     B::Code: Send + Sync + 'static,
@@ -108,10 +105,6 @@ where
         let sizes = &whole.codes.sizes;
         let layout = Layout { memory: sizes.entries + sizes.n, ..whole.layout().clone() };
         Ok(Self { whole, equations, table: Table::of(stages), layout })
-    }
-
-    fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
-        if state.len() == self.layout.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
     }
 
     /// The outputs of one of the equations at an attitude and a conjugate momentum.
@@ -202,7 +195,7 @@ where
 
     /// The state of a whole step at this motion, whose memory isn't read.
     fn of_whole(&self, state: &[f64]) -> Option<Vec<f64>> {
-        let moving = &self.checked(state).ok()?[..self.layout.advected().end];
+        let moving = &self.layout.checked(state).ok()?[..self.layout.advected().end];
         let mut whole = vec![0.0; self.whole.layout().state()];
         whole[..moving.len()].copy_from_slice(moving);
         Some(whole)
@@ -230,24 +223,15 @@ where
     }
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        self.checked(state)?;
+        self.layout.checked(state)?;
         let iterations = self.advance(self.whole.step_size(), state)?;
         let last = state.len() - 1;
         state[last] += 1.0;
         Ok(StepReport::of(iterations))
     }
 
-    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
-        let (mut next, mut iterations) = (self.checked(state)?.to_vec(), 0);
-        for _ in 0..steps {
-            iterations += u64::from(self.step(&mut next)?.iterations);
-        }
-        state.copy_from_slice(&next);
-        Ok(iterations)
-    }
-
     fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
-        let mut next: Box<[f64]> = self.checked(state)?.into();
+        let mut next: Box<[f64]> = self.layout.checked(state)?.into();
         self.advance(self.whole.step_size() * fraction, &mut next)?;
         next[self.layout.memory()].fill(0.0);
         Ok(next)

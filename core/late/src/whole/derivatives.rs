@@ -138,7 +138,7 @@ impl<B: Backend<f64>> Derivatives<B> {
     pub(super) fn roomy(&self, state: &[f64]) -> Result<Room<B>, StepError> {
         let mut room = self.varied.roomy()?;
         let (inner, own) = (room.state.len(), state.len());
-        if own != inner && self.varied.checked(state).is_err() {
+        if own != inner && self.varied.layout().checked(state).is_err() {
             return Err(OF_THIS_LAYOUT);
         }
         room.load(state);

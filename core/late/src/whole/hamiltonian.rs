@@ -10,7 +10,7 @@ use liestep_derivation::whole::HamiltonianStep;
 
 use super::codes::layout;
 use super::linear::are_finite;
-use super::stepper::{OF_THIS_LAYOUT, WholeError, check_length, write_or_nan};
+use super::stepper::{WholeError, check_length, write_or_nan};
 use crate::code::Backend;
 use crate::declaration::{Declaration, Ready, ready_each};
 use crate::error::LateError;
@@ -67,19 +67,24 @@ where
         if !(h.is_finite() && (h == 0.0 || (1.0 / h).is_finite())) {
             return Err(WholeError::Setup(SetupError::InvalidStep { step: h }));
         }
-        let equations = declaration.once(|| {
+        Ok(Self { equations: Self::equations(declaration)?, numbers: numbers.into(), h, parts })
+    }
+
+    /// The code of a declaration, written and prepared once.
+    fn equations(declaration: &'static Declaration) -> Result<Arc<Equations<B::Code>>, LateError> {
+        declaration.once(|| {
             let (programs, factors) = HamiltonianStep::of(declaration).map_err(LateError::Step)?;
             let carried = declaration.carried.iter().map(|one| one.shape.0 * one.shape.1).sum();
             let all = ready_each::<B>(&programs.all())?.try_into().map_err(|_| LateError::TooLarge)?;
             let count = |at: usize| u32::try_from(programs.all()[at].operations.len()).map_or(f64::INFINITY, f64::from);
             let operations = [count(0), count(1)];
             Ok(Equations { code: HamiltonianStep::from_all(all), layout: layout(carried, 0, &factors), operations })
-        })?;
-        Ok(Self { equations, numbers: numbers.into(), h, parts })
+        })
     }
 
-    fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
-        if state.len() == self.equations.layout.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
+    /// Names, units and places of the states.
+    pub(super) fn layout_of(declaration: &'static Declaration) -> Result<Layout, LateError> {
+        Ok(Self::equations(declaration)?.layout.clone())
     }
 
     fn run_on<const K: usize>(&self, program: &Ready<B::Code>, given: [(Array, &[f64]); K]) -> Vec<f64> {
@@ -205,7 +210,7 @@ where
     }
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        let (mut next, mut iterations) = (self.checked(state)?.to_vec(), 0);
+        let (mut next, mut iterations) = (self.equations.layout.checked(state)?.to_vec(), 0);
         for part in &self.parts {
             iterations += self.advance(self.h * part, &mut next)?;
         }
@@ -215,17 +220,8 @@ where
         Ok(StepReport::of(iterations))
     }
 
-    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
-        let (mut next, mut iterations) = (self.checked(state)?.to_vec(), 0);
-        for _ in 0..steps {
-            iterations += u64::from(self.step(&mut next)?.iterations);
-        }
-        state.copy_from_slice(&next);
-        Ok(iterations)
-    }
-
     fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
-        let mut next: Box<[f64]> = self.checked(state)?.into();
+        let mut next: Box<[f64]> = self.equations.layout.checked(state)?.into();
         for part in &self.parts {
             self.advance(self.h * fraction * part, &mut next)?;
         }
@@ -251,14 +247,17 @@ where
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
         let layout = &self.equations.layout;
-        let found =
-            self.checked(state).map(|state| self.velocity_of(&state[layout.momentum()], &state[layout.advected()]));
+        let found = self
+            .equations
+            .layout
+            .checked(state)
+            .map(|state| self.velocity_of(&state[layout.momentum()], &state[layout.advected()]));
         write_or_nan(found.ok(), velocity);
     }
 
     fn energy(&self, state: &[f64]) -> f64 {
         let Equations { code, layout, .. } = &*self.equations;
-        self.checked(state).map_or(f64::NAN, |state| {
+        self.equations.layout.checked(state).map_or(f64::NAN, |state| {
             let given = [(Array::Velocity, &state[layout.momentum()]), (Array::Advected, &state[layout.advected()])];
             self.run_on(&code.energy, given)[0]
         })
@@ -266,7 +265,7 @@ where
 
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
         let Equations { code, layout, .. } = &*self.equations;
-        let found = self.checked(state).map(|state| {
+        let found = self.equations.layout.checked(state).map(|state| {
             let given = [(Array::Attitude, &state[layout.attitude()]), (Array::Momentum, &state[layout.momentum()])];
             self.run_on(&code.spatial, given)
         });
@@ -275,7 +274,9 @@ where
 
     fn defect(&self, state: &[f64]) -> f64 {
         let Equations { code, layout, .. } = &*self.equations;
-        self.checked(state)
+        self.equations
+            .layout
+            .checked(state)
             .map_or(f64::NAN, |state| self.run_on(&code.defect, [(Array::Attitude, &state[layout.attitude()])])[0])
     }
 }

@@ -143,14 +143,35 @@ impl<B: Backend<f64>> Limit<'_, B> {
         Err(SetupError::AmbiguousVelocity { difference: (missed / size).sqrt() })
     }
 
+    /// The covectors of the reactions, one after the other, and the squares of their parts across those before.
+    fn reactions(&self, constants: &[f64]) -> Option<[Vec<f64>; 2]> {
+        let reactions = self.codes.code.reactions.as_ref()?;
+        let mut found = rare::<B>(reactions, constants, [(Array::Advected, self.advected), (Array::Half, &[])]);
+        let n = self.codes.sizes.n;
+        let squares = found.split_off(found.len() / (n + 1) * n);
+        Some([found, squares])
+    }
+
+    /// The momentum with reactions, `μ − Aᵀ (A J⁻¹ Aᵀ)⁻¹ A ξ`, whose velocity satisfies the constraints on velocities.
+    pub(super) fn constrained(&self, momentum: Vec<f64>, constants: &[f64]) -> Vec<f64> {
+        let Some([covectors, _]) = self.reactions(constants) else { return momentum };
+        let (velocity, inertia) = (self.velocity(&momentum), self.inertia());
+        let covectors: Vec<&[f64]> = covectors.chunks(velocity.len()).collect();
+        let along: Vec<Vec<f64>> = covectors.iter().map(|covector| solution(&inertia, covector)).collect();
+        let squares: Vec<f64> =
+            covectors.iter().flat_map(|covector| along.iter().map(|along| dot(covector, along))).collect();
+        let rates: Vec<f64> = covectors.iter().map(|covector| dot(covector, &velocity)).collect();
+        let impulses = solution(&squares, &rates);
+        covectors.iter().zip(impulses).fold(momentum, |momentum, (covector, impulse)| {
+            momentum.iter().zip(*covector).map(|(momentum, entry)| momentum - impulse * entry).collect()
+        })
+    }
+
     /// Checks that the velocity of a momentum satisfies the constraints on velocities, and that none repeats others.
     pub(super) fn check_constraints(&self, momentum: &[f64], constants: &[f64]) -> Result<(), SetupError> {
-        let Some(reactions) = &self.codes.code.reactions else { return Ok(()) };
+        let Some([covectors, squares]) = self.reactions(constants) else { return Ok(()) };
         let velocity = self.velocity(momentum);
-        let found = rare::<B>(reactions, constants, [(Array::Advected, self.advected), (Array::Half, &[])]);
-        let n = velocity.len();
-        let (covectors, squares) = found.split_at(found.len() / (n + 1) * n);
-        for (constraint, (covector, &square)) in covectors.chunks(n).zip(squares).enumerate() {
+        for (constraint, (covector, square)) in covectors.chunks(velocity.len()).zip(squares).enumerate() {
             NonholonomicCheck {
                 constraint,
                 size: dot(covector, covector),

@@ -1,7 +1,7 @@
 //! The stepper of a declaration by any method, and by the cheapest one for an accuracy.
 
 use liestep::accuracy::{Accuracy, AccuracyError, Candidate, Choice, choose, displacement, of_any_group};
-use liestep::motion::AnyStepper;
+use liestep::motion::{AnyStepper, Layout};
 use liestep::with::{Method, Scheme, Steppable as _};
 use liestep::{SO3, SetupError};
 use liestep_derivation::Role;
@@ -20,6 +20,18 @@ use crate::error::LateError;
 fn is_of_rotations<B: Backend<f64>>(declaration: &'static Declaration) -> Result<bool, LateError> {
     let codes = Codes::<B>::of(declaration)?;
     Ok(matches!(&codes.factors[..], [only] if only.form == Form::Rotation))
+}
+
+/// Names, units and places of the states of a declaration's [`stepper`], whatever its numbers.
+///
+/// # Errors
+///
+/// The declaration has no step, or is too large.
+pub fn layout<B: Backend<f64>>(declaration: &'static Declaration) -> Result<Layout, LateError> {
+    match declaration.role {
+        Role::Hamiltonian => Hamiltonian::<B>::layout_of(declaration),
+        _ => Ok(Codes::<B>::of(declaration)?.layout.clone()),
+    }
 }
 
 const fn refused<T>(cause: &'static str) -> Result<T, WholeError> {
@@ -67,6 +79,8 @@ pub fn stepper<B: Backend<f64>>(
     h: f64,
     method: Method,
 ) -> Result<AnyStepper, WholeError> {
+    // A step in one part isn't divided.
+    let method = Method { substeps: if method.substeps == 1 { 0 } else { method.substeps }, ..method };
     if declaration.role == Role::Hamiltonian {
         return Ok(AnyStepper::new(Hamiltonian::<B>::of(declaration, numbers, h, method)?));
     }

@@ -59,7 +59,7 @@ pub use course::Course;
 pub use derivatives::{Derivatives, Gradient, Reading, Row};
 pub use forwards::Direction;
 pub use inputs::Transition;
-pub use methods::{Question, QuestionError, for_accuracy, stepper};
+pub use methods::{Question, QuestionError, for_accuracy, layout, stepper};
 pub use pace::Paced;
 pub use signal::{Between, Signal, SignalError};
 pub use steered::Steered;

@@ -5,7 +5,7 @@ use liestep::{SetupError, StepError};
 
 use super::lengths::{MEMORY, Memory};
 use super::linear::are_finite;
-use super::stepper::{OF_THIS_LAYOUT, Whole, write_or_nan};
+use super::stepper::{Whole, write_or_nan};
 use crate::code::{Backend, Interpreter};
 
 /// A stepper of equal steps in `τ`, `dt = s dτ`, by a declaration's `pace = s(w)`; by [`Whole::paced`].
@@ -51,10 +51,6 @@ impl<B: Backend<f64>> Whole<B> {
 }
 
 impl<B: Backend<f64>> Paced<B> {
-    fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
-        if state.len() == self.layout.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
-    }
-
     /// The state of [`Whole`].
     fn inner(&self, state: &[f64]) -> Vec<f64> {
         let (last, count) = (self.whole.codes.sizes.state() - 1, state[state.len() - 1]);
@@ -128,7 +124,7 @@ impl<B: Backend<f64>> Propagator for Paced<B> {
     }
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        let (mut inner, mut memory) = (self.inner(self.checked(state)?), self.memory(state));
+        let (mut inner, mut memory) = (self.inner(self.layout.checked(state)?), self.memory(state));
         let report = self.whole.step(&mut inner)?;
         inner[self.place] = state[self.place];
         let pace = self.pace(&inner);
@@ -138,18 +134,9 @@ impl<B: Backend<f64>> Propagator for Paced<B> {
         Ok(report)
     }
 
-    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
-        let (mut next, mut iterations) = (self.checked(state)?.to_vec(), 0);
-        for _ in 0..steps {
-            iterations += u64::from(self.step(&mut next)?.iterations);
-        }
-        state.copy_from_slice(&next);
-        Ok(iterations)
-    }
-
     /// The part of `τ` that takes the time `t`, by Newton's iterations with `dt/dτ = s`.
     fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
-        let (inner, mut memory) = (self.inner(self.checked(state)?), self.memory(state));
+        let (inner, mut memory) = (self.inner(self.layout.checked(state)?), self.memory(state));
         let before = memory.0[0];
         let way = if fraction > 0.0 { 1.0 } else { -1.0 };
         let (_, last) = self.part_of(&inner, way)?;
@@ -182,7 +169,7 @@ impl<B: Backend<f64>> Propagator for Paced<B> {
     }
 
     fn time(&self, state: &[f64]) -> f64 {
-        self.checked(state).map_or(f64::NAN, |state| {
+        self.layout.checked(state).map_or(f64::NAN, |state| {
             let Memory([_, time, _, part]) = self.memory(state);
             time + part
         })
@@ -190,13 +177,13 @@ impl<B: Backend<f64>> Propagator for Paced<B> {
 
     /// The length of a step is known by making the step.
     fn length(&self, state: &[f64]) -> Option<f64> {
-        let end = self.checked(state).and_then(|state| self.part_of(&self.inner(state), 1.0));
+        let end = self.layout.checked(state).and_then(|state| self.part_of(&self.inner(state), 1.0));
         Some(end.map_or(f64::NAN, |(_, pace)| self.passed(1.0, [self.memory(state).0[0], pace])))
     }
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
         let sizes = &self.whole.codes.sizes;
-        let found = self.checked(state).map(|state| {
+        let found = self.layout.checked(state).map(|state| {
             let limit = self.whole.numbered().limit(&state[sizes.advected()..sizes.history()]);
             let (pace, fast) = (self.pace(state), limit.velocity(&state[sizes.momentum()..sizes.advected()]));
             fast.into_iter().map(|fast| fast / pace).collect()
@@ -205,15 +192,15 @@ impl<B: Backend<f64>> Propagator for Paced<B> {
     }
 
     fn energy(&self, state: &[f64]) -> f64 {
-        self.checked(state).map_or(f64::NAN, |state| self.energy_of(state))
+        self.layout.checked(state).map_or(f64::NAN, |state| self.energy_of(state))
     }
 
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        let inner = self.checked(state).map_or_else(|_| Vec::new(), |state| self.inner(state));
+        let inner = self.layout.checked(state).map_or_else(|_| Vec::new(), |state| self.inner(state));
         self.whole.spatial_momentum(&inner, momentum);
     }
 
     fn defect(&self, state: &[f64]) -> f64 {
-        self.checked(state).map_or(f64::NAN, |state| self.whole.defect(&self.inner(state)))
+        self.layout.checked(state).map_or(f64::NAN, |state| self.whole.defect(&self.inner(state)))
     }
 }

@@ -10,7 +10,9 @@ use super::stepper::Whole;
 use super::tangent::TangentCode;
 use crate::code::Backend;
 
-/// An attitude has the matrices of its factors, row by row; an input is a force in the body frame, or empty.
+/// An attitude has the matrices of its factors, row by row; an input is a force in the body frame, or empty. Where there are
+/// constraints on velocities, neighbouring states satisfy them: reactions take up the rest of a change of the momentum, on
+/// which no step depends.
 impl<B: Backend<f64>> Plant for Whole<B> {
     type State = Box<[f64]>;
     type Motion = [f64];
@@ -81,7 +83,9 @@ impl<B: Backend<f64>> Plant for Whole<B> {
         let (xi, change) = change.split_at_checked(self.codes.sizes.n)?;
         let attitude = displaced(&self.codes.factors, state.get(layout.attitude())?, xi);
         let momentum = state.get(layout.momentum())?.iter().zip(change).map(|(momentum, change)| momentum + change);
-        self.start_with_momentum(&attitude, &momentum.collect::<Vec<f64>>()).ok()
+        let advected = self.codes.seen(&self.numbers, &attitude);
+        let momentum = self.numbered().limit(&advected).constrained(momentum.collect(), &self.stages.first().numbers);
+        self.start_with_momentum(&attitude, &momentum).ok()
     }
 
     fn displacement(&self, from: &Vec<f64>, to: &Box<[f64]>) -> Option<Vec<f64>> {

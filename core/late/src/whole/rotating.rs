@@ -131,7 +131,8 @@ impl<B: Backend<f64>> Effect for RotatingScene<B> {
     type Constants = RotatingConstants<B>;
     type StepTerms = (Vector3<f64>, Directions);
 
-    const FACTS: Facts = Facts::ANY;
+    // Whoever asks for steps that undo each other asks the declaration first.
+    const FACTS: Facts = Facts { is_self_adjoint: true, ..Facts::ANY };
     const DERIVATION: &'static str = "a declaration that was read while the program runs; see its derivation\n";
 
     fn facts(&self) -> Facts {
@@ -256,9 +257,6 @@ fn iteration<B: Backend<f64>, const M: usize>(
 }
 
 impl<B: Backend<f64>> DiscreteLagrangian for RotatingScene<B> {
-    // Whoever asks for steps that undo each other asks the declaration first.
-    const SELF_ADJOINT: bool = true;
-
     fn l_d(&self, f: &Matrix3<f64>, w: &Directions, h: f64) -> f64 {
         self.of_lagrangian(0, (f, w, h))[0]
     }

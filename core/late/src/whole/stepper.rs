@@ -103,15 +103,6 @@ impl<B: Backend<f64>> Whole<B> {
         Ok(Self::shared(&Codes::of(declaration)?, numbers.into(), h, method)?)
     }
 
-    /// Names, units and places of the states of a declaration's steppers, whatever their numbers.
-    ///
-    /// # Errors
-    ///
-    /// The declaration has no kinetic part or is too large.
-    pub fn layout_of(declaration: &'static Declaration) -> Result<Layout, LateError> {
-        Ok(Codes::<B>::of(declaration)?.layout.clone())
-    }
-
     /// The stepper of the same declaration and method with other numbers, or another step, by the same code.
     ///
     /// A state of this one may be continued; if a value in space is another, start anew or [adopt](Propagator::adopt) it, as

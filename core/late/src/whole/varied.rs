@@ -13,7 +13,7 @@ use super::course::Course;
 use super::lengths::{Lengths, MEMORY, Memory, Rate};
 use super::linear::are_finite;
 use super::step::{Increment, StepCodes};
-use super::stepper::{OF_THIS_LAYOUT, Whole, write_or_nan};
+use super::stepper::{Whole, write_or_nan};
 use crate::code::{Backend, Interpreter};
 
 /// A stepper of a declaration whose parameters change with time, or whose steps have lengths of their own; by
@@ -140,10 +140,6 @@ impl<B: Backend<f64>> Varied<B> {
 
     fn memory<'a>(&self, state: &'a [f64]) -> &'a [f64] {
         &state[self.whole.codes.sizes.state() - 1..state.len() - 1]
-    }
-
-    pub(super) fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
-        if state.len() == self.layout.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
     }
 
     fn room(&self) -> Result<Room<B>, SetupError> {
@@ -374,12 +370,12 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
     }
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        self.checked(state)?;
+        self.layout.checked(state)?;
         self.step_in(state, &mut self.roomy()?)
     }
 
     fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
-        let mut next = self.checked(state)?.to_vec();
+        let mut next = self.layout.checked(state)?.to_vec();
         let iterations = self.stretch(&mut next, steps, &mut self.roomy()?)?;
         state.copy_from_slice(&next);
         Ok(iterations)
@@ -391,7 +387,7 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
         mut steps: u64,
         next: &mut dyn FnMut(&[f64], f64) -> u64,
     ) -> Result<u64, StepError> {
-        self.checked(state)?;
+        self.layout.checked(state)?;
         let (mut room, mut iterations) = (self.roomy()?, 0);
         while steps > 0 {
             iterations += self.stretch(state, steps, &mut room)?;
@@ -401,7 +397,7 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
     }
 
     fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
-        self.checked(state)?;
+        self.layout.checked(state)?;
         let mut room = self.roomy()?;
         room.load(state);
         let (start, mut memory) = (self.time(state), Memory::read(self.memory(state)));
@@ -441,18 +437,19 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
     }
 
     fn time(&self, state: &[f64]) -> f64 {
-        self.checked(state)
+        self.layout
+            .checked(state)
             .map_or(f64::NAN, |state| self.lengths.time([self.whole.h, state[state.len() - 1]], self.memory(state)))
     }
 
     fn length(&self, state: &[f64]) -> Option<f64> {
         let is_varied = !matches!(self.lengths, Lengths::Equal);
-        is_varied.then(|| self.checked(state).map_or(f64::NAN, |state| self.length_of(state, true)))
+        is_varied.then(|| self.layout.checked(state).map_or(f64::NAN, |state| self.length_of(state, true)))
     }
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
         let sizes = &self.whole.codes.sizes;
-        let found = self.checked(state).map(|state| {
+        let found = self.layout.checked(state).map(|state| {
             let numbers = self.numbers_at(self.time(state));
             let numbered = StepCodes { codes: &*self.whole.codes, numbers: &numbers };
             numbered
@@ -464,7 +461,7 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
 
     fn energy(&self, state: &[f64]) -> f64 {
         let sizes = &self.whole.codes.sizes;
-        self.checked(state).map_or(f64::NAN, |state| {
+        self.layout.checked(state).map_or(f64::NAN, |state| {
             let numbers = self.numbers_at(self.time(state));
             let numbered = StepCodes { codes: &*self.whole.codes, numbers: &numbers };
             let limit = numbered.limit(&state[sizes.advected()..sizes.history()]);
@@ -473,12 +470,12 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
     }
 
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        let inner = self.checked(state).map_or(&[][..], |state| &state[..self.whole.codes.sizes.state()]);
+        let inner = self.layout.checked(state).map_or(&[][..], |state| &state[..self.whole.codes.sizes.state()]);
         self.whole.spatial_momentum(inner, momentum);
     }
 
     fn defect(&self, state: &[f64]) -> f64 {
-        let inner = self.checked(state).map_or(&[][..], |state| &state[..self.whole.codes.sizes.state()]);
+        let inner = self.layout.checked(state).map_or(&[][..], |state| &state[..self.whole.codes.sizes.state()]);
         self.whole.defect(inner)
     }
 }

@@ -4,6 +4,7 @@ use declarations::FullTop;
 use liestep::groups::R3;
 use liestep::lagrangian;
 use liestep::mechanics::{Effect, Inertia};
+use liestep::methods::CompositionScheme;
 use liestep::motion::{AnyStepper, Integrator as _, Propagator};
 use liestep::with::{Clock, densities};
 use liestep::{SO3, StepError, Stepper};
@@ -49,6 +50,10 @@ fn turning_values_are_those_of_the_typed_stepper() {
     let driven = whole.driven(upright(&whole)).expect("a stepper");
     let typed = Stepper::new(top(), 0.01).expect("a stepper").driven(up).into_any();
     same(&driven, &typed, 10_000, 0.0);
+    let composed = self::whole(0.05, "composition Suzuki 4");
+    let driven = composed.driven(upright(&composed)).expect("a stepper");
+    let typed = Stepper::composed(top(), 0.05, CompositionScheme::SUZUKI_4).expect("a stepper").driven(up).into_any();
+    same(&driven, &typed, 2_000, 0.0);
     let clock = || Clock::orbit(0.3, 4.0, 400).expect("a clock");
     let by_clock = self::whole(1.0, "step").with_clock(clock());
     let typed = Stepper::new(top(), 1.0).expect("a stepper").with_clock(clock()).into_any();

@@ -18,7 +18,7 @@ from ._event import Moment
 from ._gradient import Gradient
 from ._jax import jax
 from ._library import (
-    body, dipole, drag, gravity, gravity_gradient, magnetic_damping, nonstandard, rotor, spring, thrust, torque,
+    air_drag, body, dipole, drag, gravity, gravity_gradient, magnetic_damping, nonstandard, rotor, spring, thrust, torque,
 )
 from ._orbit import Orbit, orbit
 from ._run import Columns, Happenings, Run, Scene, SceneRun, scene
@@ -33,7 +33,7 @@ __version__ = "0.1.0"
 __all__ = [
     "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Fit", "Gradient", "Happenings", "Many", "Moment", "Orbit", "Plan", "Run",
     "Scene", "SceneError", "SceneRun",
-    "SetupError", "Signal", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "body", "contravariant", "covariant",
+    "SetupError", "Signal", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "air_drag", "body", "contravariant", "covariant",
     "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "hamiltonian", "jax", "lagrangian", "magnetic_damping", "mixed",
     "nonholonomic", "nonstandard", "normal", "orbit", "point", "rotation", "rotor", "scene", "schemes", "signal", "spring", "thrust", "torch", "torque", "translation", "uniform",
 ]

@@ -36,6 +36,7 @@ class _Readings:
 class _Task:
     step: float
     steps: int
+    first: int
     start: _Start
     readings: list[_Readings]
     unknowns: list[list[int]]
@@ -191,6 +192,7 @@ def estimate(
     readings: Mapping[str, tuple[Any, Any]],
     unknown: Iterable[str] = (),
     every: int = 1,
+    first: int | None = None,
     velocity: Any = None,
     attitude: Any = None,
     known: Mapping[str, float] | None = None,
@@ -207,6 +209,8 @@ def estimate(
         raise SetupError(f"an estimate is one of a Lagrangian without a pace or a signal, and not of {term!r:.80}")
     whole("every", every, 1, 10**6)
     whole("iterations", iterations, 0, 2**31 - 1)
+    if first is not None:
+        whole("first", first, 2, 2**31 - 1)
     if not readings:
         raise SetupError('an estimate has readings: `{"velocity": (values, deviation)}`')
     lists, steps = [], None
@@ -249,7 +253,7 @@ def estimate(
         along += own_places
         spread += [number(name, deviation)] * len(own_places)
     task = _Task(
-        number("step", step), steps or 0, _start(attitude, velocity), lists, unknowns, guesses,
+        number("step", step), steps or 0, (first - 1) * every if first else steps or 0, _start(attitude, velocity), lists, unknowns, guesses,
         [abs(guess) or 1.0 for guess in guesses], along, bool(inputs), spread, information.tolist(), number("tolerance", tolerance),
         iterations,
     )

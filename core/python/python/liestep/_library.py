@@ -47,7 +47,24 @@ def _nonstandard(values: Array) -> Array:
     return traces / 2 * np.eye(3) - matrices
 
 
-def body(J: Any, *, kinetic: str = "rigid") -> Term:
+def _check_body(J: Any) -> None:
+    """Refuses an inertia whose principal moments no rigid body has."""
+    import numpy as np
+
+    if isinstance(J, Signal):
+        return
+    matrix = diagonal(floats("J", J, DeclarationError)[None])[0] if np.ndim(J) == 1 else floats("J", J, DeclarationError)
+    if matrix.shape != (3, 3) or abs(matrix - matrix.T).max() > 1e-12 * abs(matrix).max():
+        return
+    least, middle, largest = np.linalg.eigvalsh(matrix)
+    if least > 0 and largest > (middle + least) * (1 + 1e-12):
+        raise DeclarationError(
+            f"no body has this inertia: {largest:g} > {middle:g} + {least:g}, and a principal moment is at most the sum of the "
+            "others; if it is meant, as with rotors or in a fluid, write `effective=True`"
+        )
+
+
+def body(J: Any, *, kinetic: str = "rigid", effective: bool = False) -> Term:
     """A rigid body about its fixed point or its centre of mass.
 
     Parameters
@@ -57,6 +74,13 @@ def body(J: Any, *, kinetic: str = "rigid") -> Term:
         diagonal it has products of inertia with a minus: ``J_xy = −∫ x y dm``.
     kinetic : {"rigid", "cayley", "geodesic", "fourth_order", "sixth_order"}
         How its energy is discretised: (3.13) of the thesis, or as the library's body of that name.
+    effective : bool
+        Whether `J` may be what no rigid body has, as with rotors or in a fluid: any that is positive definite.
+
+    Raises
+    ------
+    DeclarationError
+        If a principal moment is above the sum of the others, and `effective` isn't said.
 
     Examples
     --------
@@ -64,6 +88,8 @@ def body(J: Any, *, kinetic: str = "rigid") -> Term:
     >>> ls.body([3, 3, 4]).name
     'rigid_body'
     """
+    if not effective:
+        _check_body(J)
     if kinetic == "rigid":
         return _term("rigid_body", J_d=nonstandard(J))
     if not _native.library(f"{kinetic}_body"):
@@ -113,6 +139,14 @@ def rotor(*, spin: Any) -> Term:
 def drag(*, c: float, J: Any) -> Term:
     """A torque against the velocity: coefficient, N m s, and the inertia of the body, kg m²."""
     return _term("drag", c=c, J=J)
+
+
+def air_drag(*, c: Any, air: Any, J: Any) -> Term:
+    """Drag in air that turns: coefficient, N m s, the angular velocity of the air in space, rad/s, and the inertia of the body, kg m².
+
+    Along an orbit the air turns with the satellite's place by ``air=orbit.turning``.
+    """
+    return _term("air_drag", c=c, air=air, J=J)
 
 
 def magnetic_damping(*, k: float, field: Any, J: Any) -> Term:

@@ -89,6 +89,7 @@ class Term(Sum):
         readings: Mapping[str, tuple[Any, Any]],
         unknown: Iterable[str] = (),
         every: int = 1,
+        first: int | None = None,
         velocity: Any = None,
         attitude: Any = None,
         known: Mapping[str, float] | None = None,
@@ -109,8 +110,13 @@ class Term(Sum):
             numbers.
         every : int
             Steps from reading to reading.
+        first : int, optional
+            With so many readings the search begins, and it goes on with three times as many each time. All at once, as by default,
+            the squares of a motion of many turns have minima far from the least one: a search ends there as ``"exhausted"``, or
+            with `Fit.squares` far above the number of readings. Take as many as a turn or two has.
         velocity, attitude : array_like, optional
-            The first guess of the start: by default the first reading of the velocity, and the identity.
+            The first guess of the start: by default the first reading of the velocity, and the identity. Beside constraints on
+            velocities it satisfies them.
         known : mapping, optional
             Standard deviations of the first guess: of ``"attitude"``, rad, ``"momentum"``, and of unknown parameters.
         force : float or array_like, optional
@@ -145,9 +151,17 @@ class Term(Sum):
         ...     unknown=["J"], known={"attitude": 1e-3})
         >>> fit.verdict, bool(abs(np.diag(fit.parameters["J"]) - [1, 2, 2.5]).max() < 0.01)
         ('converged', True)
+
+        Over ten seconds a guess that is a third off is turns apart, unless the search begins with one second:
+
+        >>> gyroscope = body([1.0, 2.0, 2.5]).stepper(0.02).run(velocity=[0.5, 1, 2], until=10).velocity
+        >>> fit = body([1.3, 1.6, 3.0]).estimate(step=0.02, readings={"velocity": (gyroscope, 1e-3)}, unknown=["J"],
+        ...     known={"attitude": 1e-3}, first=50)
+        >>> fit.verdict, bool(abs(np.diag(fit.parameters["J"]) - [1, 2, 2.5]).max() < 1e-6)
+        ('converged', True)
         """
-        return estimate(self, step=step, readings=readings, unknown=unknown, every=every, velocity=velocity, attitude=attitude,
-                        known=known, **rest)
+        return estimate(self, step=step, readings=readings, unknown=unknown, every=every, first=first, velocity=velocity,
+                        attitude=attitude, known=known, **rest)
 
     def ensemble(self, members: int, *, step: float = 0.01, **rest: Any) -> Ensemble:
         """Many motions drawn at random; see `liestep.Ensemble`."""

@@ -1,12 +1,14 @@
 //! The table of a body.
 
 use std::fmt;
+use std::marker::PhantomData;
 
 use liestep::NonstandardInertia;
 use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError};
 use nalgebra::{Matrix3, Vector3};
 use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+use serde::de::value::SeqAccessDeserializer;
+use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
 
 use crate::file::key::refuse;
 use crate::file::quantity;
@@ -119,50 +121,110 @@ fn impossible(moments: &Vector3<f64>) -> Option<String> {
     }
     let [l, m, s] = [largest, middle, least].map(short);
     (largest > middle + least).then(|| {
-        format!("no body has this inertia: {l} > {m} + {s}, and a principal moment is at most the sum of the others")
+        format!("no body has this inertia: {l} > {m} + {s}, and a principal moment is at most the sum of the others; {EFFECTIVE}")
     })
 }
 
-/// Principal moments of inertia that satisfy the triangle inequality.
+/// An inertia in one of its forms, `[…]`, or `{ effective = […] }` of what is no rigid body.
+pub(crate) struct AnyInertia<T> {
+    pub(crate) value: T,
+    pub(crate) is_effective: bool,
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for AnyInertia<T> {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        source.deserialize_any(ListOrTable(PhantomData))
+    }
+}
+
+struct ListOrTable<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for ListOrTable<T> {
+    type Value = AnyInertia<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a sequence")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<Self::Value, A::Error> {
+        let value = T::deserialize(SeqAccessDeserializer::new(list))?;
+        Ok(AnyInertia { value, is_effective: false })
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, mut table: M) -> Result<Self::Value, M::Error> {
+        match (table.next_key::<String>()?.as_deref(), table.next_value()?, table.next_key::<String>()?) {
+            (Some("effective"), value, None) => Ok(AnyInertia { value, is_effective: true }),
+            _ => Err(M::Error::custom("an inertia is a list, or `{ effective = […] }` where no rigid body has it")),
+        }
+    }
+}
+
+/// The message for an inertia that no rigid body has.
+fn unlike_bodies(impossible: Option<String>, error: InertiaError) -> String {
+    impossible.unwrap_or_else(|| match error {
+        InertiaError::TriangleInequality { smallest } => {
+            format!("no body has this inertia: J_d has the negative eigenvalue {}; {EFFECTIVE}", short(smallest))
+        }
+        error => error.to_string(),
+    })
+}
+
+const EFFECTIVE: &str = "if it is meant, as with rotors or in a fluid, write `{ effective = […] }`";
+
+/// Principal moments of inertia, which satisfy the triangle inequality or are effective.
 #[derive(Deserialize)]
-#[serde(try_from = "Triple<quantity::Inertia>")]
+#[serde(try_from = "AnyInertia<Triple<quantity::Inertia>>")]
 pub(crate) struct Moments {
     pub(crate) J: Inertia,
     pub(crate) J_d: DiagonalNonstandardInertia,
 }
 
-impl TryFrom<Triple<quantity::Inertia>> for Moments {
+impl TryFrom<AnyInertia<Triple<quantity::Inertia>>> for Moments {
     type Error = String;
 
-    fn try_from(moments: Triple<quantity::Inertia>) -> Result<Self, String> {
+    fn try_from(moments: AnyInertia<Triple<quantity::Inertia>>) -> Result<Self, String> {
+        let AnyInertia { value: moments, is_effective } = moments;
+        if is_effective {
+            let J = Inertia::effective(Matrix3::from_diagonal(&moments.value));
+            let both = J.and_then(|J| Ok(Self { J, J_d: DiagonalNonstandardInertia::effective(moments.value)? }));
+            return both.map_err(|error| error.to_string());
+        }
         let J_d = DiagonalNonstandardInertia::from_principal_moments(moments.value);
         let made = J_d.and_then(|J_d| Ok(Self { J: Inertia::from_principal_moments(moments.value)?, J_d }));
-        made.map_err(|error| impossible(&moments.value).unwrap_or_else(|| error.to_string()))
+        made.map_err(|error| unlike_bodies(impossible(&moments.value), error))
     }
 }
 
 /// Principal nonstandard moments of a possible body.
 #[derive(Deserialize)]
-#[serde(try_from = "Triple<quantity::Inertia>")]
+#[serde(try_from = "AnyInertia<Triple<quantity::Inertia>>")]
 pub(crate) struct NonstandardMoments(pub(crate) DiagonalNonstandardInertia);
 
-impl TryFrom<Triple<quantity::Inertia>> for NonstandardMoments {
-    type Error = InertiaError;
+impl TryFrom<AnyInertia<Triple<quantity::Inertia>>> for NonstandardMoments {
+    type Error = String;
 
-    fn try_from(diagonal: Triple<quantity::Inertia>) -> Result<Self, InertiaError> {
-        DiagonalNonstandardInertia::from_diagonal(diagonal.value).map(Self)
+    fn try_from(diagonal: AnyInertia<Triple<quantity::Inertia>>) -> Result<Self, String> {
+        let AnyInertia { value: diagonal, is_effective } = diagonal;
+        let d = diagonal.value;
+        let made = if is_effective {
+            DiagonalNonstandardInertia::effective(Vector3::new(d.y + d.z, d.z + d.x, d.x + d.y))
+        } else {
+            DiagonalNonstandardInertia::from_diagonal(d)
+        };
+        made.map(Self).map_err(|error| unlike_bodies(None, error))
     }
 }
 
 /// The inertia tensor in any axes, by its rows.
 #[derive(Deserialize)]
-#[serde(try_from = "Vec<Triple<quantity::Inertia>>")]
+#[serde(try_from = "AnyInertia<Vec<Triple<quantity::Inertia>>>")]
 pub(crate) struct InertiaRows(pub(crate) Inertia);
 
-impl TryFrom<Vec<Triple<quantity::Inertia>>> for InertiaRows {
+impl TryFrom<AnyInertia<Vec<Triple<quantity::Inertia>>>> for InertiaRows {
     type Error = String;
 
-    fn try_from(rows: Vec<Triple<quantity::Inertia>>) -> Result<Self, String> {
+    fn try_from(rows: AnyInertia<Vec<Triple<quantity::Inertia>>>) -> Result<Self, String> {
+        let AnyInertia { value: rows, is_effective } = rows;
         let [x, y, z]: [Vector3<f64>; 3] = rows
             .iter()
             .map(|row| row.value)
@@ -170,7 +232,10 @@ impl TryFrom<Vec<Triple<quantity::Inertia>>> for InertiaRows {
             .try_into()
             .map_err(|_| format!("`J` has three rows of three components, found {} rows", rows.len()))?;
         let matrix = Matrix3::from_rows(&[x, y, z].map(|row| row.transpose()));
+        if is_effective {
+            return Inertia::effective(matrix).map(Self).map_err(|error| error.to_string());
+        }
         let principal = || (matrix == matrix.transpose()).then(|| impossible(&matrix.symmetric_eigenvalues()));
-        Inertia::new(matrix).map(Self).map_err(|error| principal().flatten().unwrap_or_else(|| error.to_string()))
+        Inertia::new(matrix).map(Self).map_err(|error| unlike_bodies(principal().flatten(), error))
     }
 }

@@ -17,12 +17,14 @@ use crate::file::start::Attitude;
 use crate::file::tables::Document;
 use crate::file::text::check_name;
 
-/// A law with what it reads, sampled and held.
+/// A law with what it reads, sampled and held, or at both ends of each step.
 #[derive(Clone)]
 pub(crate) struct Controller {
     law: Law,
     /// Time between samples, s; a step by default.
     pub(crate) every: Option<f64>,
+    /// Whether half of the impulse is that of either end of a step.
+    pub(crate) is_at_ends: bool,
     target: UnitQuaternion<f64>,
     /// Whether attitude and rate are relative to the local vertical.
     pub(crate) is_relative: bool,
@@ -133,25 +135,28 @@ impl Controller {
         let error = if error.w < 0.0 { -error.into_inner() } else { error.into_inner() };
         let own = [
             Value::Number(seen.now.time),
-            Value::Number(self.every.unwrap_or_default()),
             Value::Vector(velocity),
             Value::Number(error.w),
             Value::Vector(error.imag()),
         ];
+        // What belongs to samples.
+        let every = self.every.filter(|_| !self.is_at_ends).map(Value::Number);
+        let before = if self.is_at_ends { &[] } else { before };
         let readings = now.iter().chain(before).copied().map(Value::Vector);
-        let speed = speed.map(Value::Number);
-        let all: Vec<Value> =
-            own.into_iter().chain(speed).chain(readings).chain(self.parameters.iter().copied()).collect();
+        let own = own.into_iter().chain(every).chain(speed.map(Value::Number));
+        let all: Vec<Value> = own.chain(readings).chain(self.parameters.iter().copied()).collect();
         self.law.value(&all)
     }
 
     /// The controller of a table with a text `torque`, beside keys that aren't its parameters.
     fn read(table: &DeTable<'_>, text: (&str, Range<usize>), keys: &[&str], kind: Kind) -> Result<Self, SpanMessage> {
-        let mut names: Vec<(String, Kind)> = ["t", "every", "Omega", "q_w", "q"]
+        let is_at_ends = at_ends(table)?;
+        let mut names: Vec<(String, Kind)> = ["t", "Omega", "q_w", "q"]
             .into_iter()
-            .zip([Kind::Number, Kind::Number, Kind::Vector, Kind::Number, Kind::Vector])
+            .zip([Kind::Number, Kind::Vector, Kind::Number, Kind::Vector])
             .map(|(name, kind)| (name.to_owned(), kind))
             .collect();
+        names.extend((!is_at_ends).then(|| ("every".to_owned(), Kind::Number)));
         names.extend((kind == Kind::Number).then(|| ("speed".to_owned(), Kind::Number)));
         let advected = advected(table)?;
         let mut readings = Vec::new();
@@ -161,7 +166,8 @@ impl Controller {
             readings.push(reading(value)?);
         }
         names.extend(advected.iter().map(|(name, ..)| (name.clone(), Kind::Vector)));
-        names.extend(advected.iter().map(|(name, ..)| (format!("{name}_before"), Kind::Vector)));
+        let before = advected.iter().filter(|_| !is_at_ends);
+        names.extend(before.map(|(name, ..)| (format!("{name}_before"), Kind::Vector)));
         let mut parameters = Vec::new();
         let is_parameter = |key: &str| !keys.contains(&key) && !COMMON.contains(&key);
         for (key, value) in table {
@@ -190,12 +196,26 @@ impl Controller {
             }
             frame => frame.is_some(),
         };
-        Ok(Self { law, every, target, is_relative, readings, parameters })
+        Ok(Self { law, every, is_at_ends, target, is_relative, readings, parameters })
     }
 }
 
 /// Keys of all laws.
-const COMMON: [&str; 5] = ["torque", "every", "target", "relative_to", "advected"];
+const COMMON: [&str; 6] = ["torque", "every", "at", "target", "relative_to", "advected"];
+
+/// Whether a law is at both ends of each step.
+fn at_ends(table: &DeTable<'_>) -> Result<bool, SpanMessage> {
+    match (table.get("at"), table.get("every")) {
+        (None, _) => Ok(false),
+        (Some(at), _) if at.get_ref().as_str() != Some("both ends") => {
+            Err((at.span(), "a law is held from sample to sample, or is `at = \"both ends\"` of each step".to_owned()))
+        }
+        (Some(_), Some(every)) => {
+            Err((every.span(), "a law at both ends of each step has no samples: leave `every` out".to_owned()))
+        }
+        (Some(_), None) => Ok(true),
+    }
+}
 
 /// Names of the vectors in space that a law reads, and their keys.
 fn advected(table: &DeTable<'_>) -> Result<Vec<(String, String, Range<usize>)>, SpanMessage> {
@@ -273,6 +293,12 @@ impl Wheel {
             (None, None) => Motor::Number(0.0),
             (None, Some(value)) => match value.get_ref().as_str() {
                 Some(text) if Scalar::<Torque>::deserialize(ValueDeserializer::from(value.clone())).is_err() => {
+                    if let Some(at) = table.get("at") {
+                        return Err((
+                            at.span(),
+                            "the law of a wheel is held from sample to sample: leave `at` out".to_owned(),
+                        ));
+                    }
                     Motor::Law(Box::new(Controller::read(table, (text, value.span()), &WHEEL, Kind::Number)?))
                 }
                 _ => Motor::Number(required::<Scalar<Torque>>(table, "torque", &span)?.value),

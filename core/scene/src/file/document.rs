@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use liestep::methods::CompositionScheme;
 use liestep::with::Scheme;
 use liestep_derivation::Role;
 use liestep_late::{Declaration, LateError, Signal};
@@ -38,18 +39,20 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let (mut control, mut wheel) = control::take(&mut rest, &of_value).map_err(located)?;
     let mut on = None;
     let mut own = |role| take(&mut rest, role, &mut on).map_err(located);
-    let (lagrangian, force, nonholonomic) = (own(Role::Lagrangian)?, own(Role::Force)?, own(Role::Nonholonomic)?);
+    let (lagrangian, hamiltonian) = (own(Role::Lagrangian)?, own(Role::Hamiltonian)?);
+    let (force, nonholonomic) = (own(Role::Force)?, own(Role::Nonholonomic)?);
     if let Some(name) = named_method(&rest) {
         return Err(located((span(document, &["run", "method"]), format!("`{name}` {METHODS}"))));
     }
     let mut file =
         SceneFile::deserialize(Deserializer::from(rest)).map_err(|error| Mistake::of_toml(path, text, &error))?;
-    if file.body.is_none() && lagrangian.is_empty() {
+    if file.body.is_none() && lagrangian.is_empty() && hamiltonian.is_empty() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
     file.run.count(document).map_err(located)?;
-    (file.lagrangian, file.force, file.nonholonomic, file.over_time) =
-        (lagrangian, force, nonholonomic, over_time.into());
+    (file.lagrangian, file.hamiltonian, file.force, file.nonholonomic) = (lagrangian, hamiltonian, force, nonholonomic);
+    file.over_time = over_time.into();
+    beside(document, &file).map_or(Ok(()), Err).map_err(located)?;
     add(document, &mut file).and_then(|()| fixed(&file).map_or(Ok(()), Err)).map_err(located)?;
     if let Some(start) = document.get_ref().get("start") {
         file.start = Beginning::read(start, &file.group, file.orbit.as_ref()).map_err(located)?;
@@ -99,7 +102,8 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let at = |keys: &[&str]| place_of(text, &span(document, keys));
     let keys = ["accuracy", "steps_per_orbit"];
     let pace = keys.into_iter().find(|key| has(document, "run", key)).unwrap_or("step");
-    let body = if file.body.is_none() { "lagrangian" } else { "body" };
+    let energies = [("body", file.body.is_some()), ("hamiltonian", !file.hamiltonian.is_empty())];
+    let body = energies.into_iter().find(|(_, is_there)| *is_there).map_or("lagrangian", |(key, _)| key);
     let places = Places {
         body: at(&[body]),
         start: at(&["start"]),
@@ -110,6 +114,34 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     };
     file.origin = Origin { path: path.to_owned(), places };
     Ok(file)
+}
+
+/// Conflicts with a Hamiltonian, which has all terms in its text, and steps of its own.
+fn beside(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
+    file.hamiltonian.first()?;
+    let wrong = |keys: &[&str], message: &str| Some((span(document, keys), message.to_owned()));
+    let whole = "a Hamiltonian has all its terms in its text: write this into its `h`, or leave it out";
+    let is_there = |table: &&str| document.get_ref().contains_key(*table);
+    let tables = ["body", "lagrangian", "force", "nonholonomic", "control", "wheel"].into_iter().find(is_there);
+    if let Some(table) = tables.or_else(|| file.effects().next().map(|(effect, _)| effect.key)) {
+        return wrong(&[table], whole);
+    }
+    if let Some(one) = file.hamiltonian.get(1) {
+        return Some((one.span.clone(), whole.to_owned()));
+    }
+    if let Some(one) = file.over_time.first() {
+        return Some((
+            one.span.clone(),
+            "the parameters of a Hamiltonian don't change with time: give a value".to_owned(),
+        ));
+    }
+    if has(document, "run", "density") {
+        return wrong(&["run", "density"], "a Hamiltonian has equal steps: leave the density out");
+    }
+    match file.run.pace {
+        Pace::Accuracy(_) => wrong(&["run"], "a Hamiltonian has steps that you choose: give the run a `step`"),
+        Pace::Step { .. } => None,
+    }
 }
 
 /// Adds the terms of a file with a Lagrangian that has the kinetic energy, and finds the group.
@@ -138,13 +170,13 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage>
         );
         return Err((span(document, &[effect.key]), message));
     }
-    let first = file.lagrangian[0].span.clone();
+    let Some(DeclaredTerm { declaration, span: first, increments, .. }) = own().next().cloned() else { return Ok(()) };
     let library = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
-    let lagrangians = file.lagrangian.iter().map(|own| Ok(own.declaration));
+    let lagrangians = file.lagrangian.iter().chain(&file.hamiltonian).map(|own| Ok(own.declaration));
     let forces = file.force.iter().chain(&file.nonholonomic).map(|own| Ok(own.declaration));
     let terms = lagrangians.chain(library).chain(forces).collect::<Result<Vec<_>, _>>();
     let terms = terms.map_err(|error| of_term(&first, error))?;
-    let is_other = |one: &&DeclaredTerm| one.declaration.factors != file.lagrangian[0].declaration.factors;
+    let is_other = |one: &&DeclaredTerm| one.declaration.factors != declaration.factors;
     if let Some(one) = own().find(is_other) {
         return Err((one.span.clone(), "the terms of a scene are on one group, and this one is on another".to_owned()));
     }
@@ -153,7 +185,7 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage>
         let message = "nothing moves by a potential alone: a `lagrangian` has a kinetic energy, or the file a `body`";
         return Err((first, message.to_owned()));
     }
-    file.group = Group::of(sum, file.lagrangian[0].increments.clone()).map_err(|error| of_term(&first, error))?;
+    file.group = Group::of(sum, increments).map_err(|error| of_term(&first, error))?;
     file.sum = Some(sum);
     Ok(())
 }
@@ -309,12 +341,12 @@ fn of_devices(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> 
     let at = span_of_law.or_else(|| file.wheel.first().map(|wheel| wheel.span.clone()))?;
     let is_of_steps = matches!(file.run.pace, Pace::Step { .. }) && !file.has_steps_of_its_own();
     let beside = [
-        (!file.group.is_rotation() || file.body.is_none(), at, "a `[body]`"),
+        (!file.group.is_rotation(), at, "a body that turns, a `[body]` or a `[lagrangian]` on `SO3`"),
         (!is_of_steps, span(document, &["run"]), "a `step`, and neither an accuracy, a density nor steps per orbit"),
         (
-            !matches!(file.run.method, Scheme::Step),
+            !matches!(file.run.method, Scheme::Step | Scheme::Composition(_)),
             span(document, &["run", "method"]),
-            "the scene's own step: leave `method` out",
+            "the scene's own step or a composition of it: take one, or leave `method` out",
         ),
     ];
     if let Some((_, at, what)) = beside.into_iter().find(|(is_odd, ..)| *is_odd) {
@@ -352,6 +384,23 @@ fn fixed(file: &SceneFile) -> Option<SpanMessage> {
     Some((last.span.clone(), message))
 }
 
+/// The reason why the step of a scene can't be composed by a scheme.
+fn of_composition(scheme: &CompositionScheme, file: &SceneFile) -> Option<String> {
+    let is_one_sided = |own: &[DeclaredTerm]| own.iter().any(|own| !own.declaration.is_self_adjoint);
+    if is_one_sided(&file.force) {
+        let message = "only steps that undo those of −h can be composed, and those with this `force` don't: give half of its \
+                       impulse to either end, as `h * tau.dot(eta + eta_next) / 2`";
+        return Some(message.to_owned());
+    }
+    if is_one_sided(&file.lagrangian) || is_one_sided(&file.nonholonomic) {
+        let message = "only steps that undo those of −h can be composed, and those of this Lagrangian don't";
+        return Some(message.to_owned());
+    }
+    let (name, base, order) = (scheme.name(), scheme.base(), file.own_order());
+    (base != order)
+        .then(|| format!("{name} composes a step of order {base}, and that of this scene is of order {order}"))
+}
+
 /// Conflicts with a method; those of a Lagrangian come first.
 fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     let wrong = |keys: &[&str], message: String| Some((span(document, keys), message));
@@ -379,17 +428,11 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
             return wrong(&["run", "method"], message.to_owned());
         }
     }
-    if let Some(sum) = file.sum {
-        if !matches!(method, Scheme::Step | Scheme::Composition(_)) {
-            let message = format!("{} moves a body of the library; leave it out", kind(method));
-            return wrong(&["run", "method"], message);
-        }
-        if matches!(method, Scheme::Composition(_)) && !sum.is_self_adjoint && file.first_force().is_none() {
-            let message = "only steps that undo those of −h can be composed, and those of this Lagrangian don't";
-            return wrong(&["run", "method"], message.to_owned());
-        }
+    if file.sum.is_some() && !matches!(method, Scheme::Step | Scheme::Composition(_)) {
+        let message = format!("{} moves a body of the library; leave it out", kind(method));
+        return wrong(&["run", "method"], message);
     }
-    if !matches!(method, Scheme::Step)
+    if !matches!(method, Scheme::Step | Scheme::Composition(_))
         && let Some(force) = file.first_force()
     {
         let name = kind(method);
@@ -401,10 +444,8 @@ fn of_method(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
         return wrong(&["run", "method"], message);
     }
     if let Scheme::Composition(scheme) = method
-        && scheme.base() != file.own_order()
+        && let Some(message) = of_composition(scheme, file)
     {
-        let (name, base, order) = (scheme.name(), scheme.base(), file.own_order());
-        let message = format!("{name} composes a step of order {base}, and that of this scene is of order {order}");
         return wrong(&["run", "method"], message);
     }
     if let Scheme::Splitting(_) | Scheme::Processed(_) | Scheme::Collocation(_) | Scheme::Exact = method

@@ -98,7 +98,7 @@ pub(crate) const LISTED: [&str; 3] = ["control", "wheel", "pointing"];
 /// The tables whose values can be drawn.
 fn drawable() -> impl Iterator<Item = &'static str> {
     let effects = EFFECTS.iter().map(|effect| effect.key);
-    let first = ["body", "orbit", "lagrangian", "force", "nonholonomic"].into_iter().chain(effects);
+    let first = ["body", "orbit", "lagrangian", "hamiltonian", "force", "nonholonomic"].into_iter().chain(effects);
     first.chain(["start"]).chain(LISTED).chain(["joint"])
 }
 

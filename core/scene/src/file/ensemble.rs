@@ -175,7 +175,7 @@ pub(crate) fn read(
     let is_drawn = |name: &str| axes.iter().any(|axis| axis.keys.first().is_some_and(|key| key.get_ref() == name));
     // A drawn Lagrangian, force, constraint or orbit affects other tables, too: all of them are read anew.
     let all = |file: &SceneFile| {
-        ["lagrangian", "force", "nonholonomic", "orbit"].iter().chain(&LISTED).any(|name| is_drawn(name))
+        ["lagrangian", "hamiltonian", "force", "nonholonomic", "orbit"].iter().chain(&LISTED).any(|name| is_drawn(name))
             || file.over_time.iter().any(|one| is_drawn(&one.table))
             || file.run.steps_per_orbit.is_some()
     };

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use liestep::motion::{Factor, FactorKind};
-use liestep_late::{Declaration, LateError, Whole};
+use liestep_late::{Declaration, LateError, layout};
 
 use crate::file::lagrangian::Backend;
 
@@ -34,7 +34,7 @@ impl Group {
     /// The group of a declaration, whose increments have these names.
     pub(crate) fn of(declaration: &'static Declaration, increments: Vec<String>) -> Result<Self, LateError> {
         let groups = declaration.factors.iter().map(|factor| factor.name.clone()).collect();
-        let factors = Whole::<Backend>::layout_of(declaration)?.factors;
+        let factors = layout::<Backend>(declaration)?.factors;
         let (mut place, mut quaternions) = (0, Vec::new());
         for factor in &factors {
             quaternions.extend((factor.kind == FactorKind::Rotation).then_some(place));

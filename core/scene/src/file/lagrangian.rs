@@ -1,4 +1,4 @@
-//! The tables of Lagrangians, forces and constraints of the file's own: their texts are derived, and their parameters have
+//! The tables of Lagrangians, Hamiltonians, forces and constraints of the file's own: their texts are derived, and their parameters have
 //! numbers.
 
 use std::ops::Range;
@@ -23,7 +23,7 @@ pub(crate) type Backend = liestep_machine::Machine;
 #[cfg(not(feature = "machine"))]
 pub(crate) type Backend = liestep_late::Interpreter;
 
-/// A Lagrangian, a force or a constraint on velocities, with the numbers of its parameters.
+/// A Lagrangian, a Hamiltonian, a force or a constraint on velocities, with the numbers of its parameters.
 #[derive(Clone)]
 pub(crate) struct DeclaredTerm {
     pub(crate) declaration: &'static Declaration,
@@ -57,6 +57,8 @@ const KEYS_OF_FORCES: &str = "a force has `work`; it may have `advected`, as in 
                               key for each parameter";
 const KEYS_OF_CONSTRAINTS: &str = "a constraint on velocities has `zero`; it may have a `velocity`, a `discretise`, \
                                    `advected`, as in `advected = { w = \"up\" }`, and has a key for each parameter";
+const KEYS_OF_HAMILTONIANS: &str = "a Hamiltonian has `h`; it may have a `momentum`, a `group` with `generators`, \
+                                    `advected`, as in `advected = { w = \"up\" }`, and has a key for each parameter";
 const GROUP: &str = "a group is a name, as \"SE3\", or a table of a product's increments, as `{ F = \"SO3\", d = \"R3\" }`; \
                      one of your own has a name of its own and its `generators`";
 
@@ -189,6 +191,9 @@ impl<'t, 'a> Text<'t, 'a> {
                 self.line(&format!("discretise = {discretise},"), at);
             }
             ("zero", self.text("zero")?.ok_or_else(|| (self.span.clone(), KEYS_OF_CONSTRAINTS.to_owned()))?)
+        } else if self.role == Role::Hamiltonian {
+            self.read_names("momentum", Some("mu"))?;
+            ("h", self.text("h")?.ok_or_else(|| (self.span.clone(), KEYS_OF_HAMILTONIANS.to_owned()))?)
         } else {
             match (self.text("l_d")?, self.text("l")?, self.text("discretise")?) {
                 (Some(l_d), None, None) => ("l_d", l_d),
@@ -211,6 +216,7 @@ impl<'t, 'a> Text<'t, 'a> {
         let known: &[&str] = match self.role {
             Role::Force => &["group", "generators", "work", "displacement", "advected"],
             Role::Nonholonomic => &["group", "generators", "zero", "velocity", "discretise", "advected"],
+            Role::Hamiltonian => &["group", "generators", "h", "momentum", "advected"],
             _ => &["group", "generators", "l_d", "l", "velocity", "discretise", "pace", "advected"],
         };
         let mut own: Vec<_> = self.table.iter().filter(|(key, _)| !known.contains(&key.get_ref().as_ref())).collect();
@@ -232,12 +238,14 @@ impl<'t, 'a> Text<'t, 'a> {
     fn declared(self) -> Result<DeclaredTerm, SpanMessage> {
         let lines: Vec<&str> = self.lines.iter().map(|line| line.text.as_str()).collect();
         let fields: Vec<String> = self.parameters.iter().map(|one| format!("{}: {}", one.name, one.kind)).collect();
-        let (attribute, name) = match self.role {
-            Role::Force => ("force", "Force"),
-            Role::Nonholonomic => ("nonholonomic", "Nonholonomic"),
-            _ => ("lagrangian", "Lagrangian"),
+        let name = match self.role {
+            Role::Force => "Force",
+            Role::Nonholonomic => "Nonholonomic",
+            Role::Hamiltonian => "Hamiltonian",
+            _ => "Lagrangian",
         };
-        let whole = format!("#[{attribute}(\n{}\n)]\nstruct {name} {{ {} }}", lines.join("\n"), fields.join(", "));
+        let (attribute, lines) = (self.role.attribute(), lines.join("\n"));
+        let whole = format!("#[{attribute}(\n{lines}\n)]\nstruct {name} {{ {} }}", fields.join(", "));
         let declaration = Declaration::parse(&whole).map_err(|error| self.mistake(error))?;
         let numbers = self.parameters.into_iter().flat_map(|one| one.numbers).collect();
         let (increments, has_a_pace, span) = (self.increments, self.has_a_pace, self.span);

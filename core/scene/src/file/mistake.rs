@@ -164,12 +164,14 @@ pub(crate) fn place_of(text: &str, span: &Range<usize>) -> (usize, usize) {
     place(text, span.start)
 }
 
-/// A text with its control characters written out, as a terminal would obey them. Tabs and line feeds stay.
+/// A text with its control characters written out, as a terminal would obey them, and the two letters that no SVG may have.
+/// Tabs and line feeds stay.
 #[must_use]
 pub fn visible(text: &str) -> String {
     let mut all = String::with_capacity(text.len());
     for character in text.chars() {
-        if character.is_control() && !"\n\t".contains(character) {
+        let is_hidden = character.is_control() && !"\n\t".contains(character);
+        if is_hidden || "\u{fffe}\u{ffff}".contains(character) {
             all.extend(character.escape_default());
         } else {
             all.push(character);

@@ -71,7 +71,7 @@ pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverT
     let context = (path, orbit.as_ref());
     for (name, tables) in document.get_mut().iter_mut() {
         let name = name.get_ref().to_string();
-        let is_own = ["lagrangian", "force", "nonholonomic"].contains(&name.as_str());
+        let is_own = ["lagrangian", "hamiltonian", "force", "nonholonomic"].contains(&name.as_str());
         if !is_own && !EFFECTS.iter().any(|effect| effect.key == name) {
             continue;
         }
@@ -125,7 +125,7 @@ fn of_table(
 }
 
 /// Keys of a declaration whose values are texts.
-const TEXTS: [&str; 7] = ["l", "l_d", "work", "group", "discretise", "velocity", "displacement"];
+const TEXTS: [&str; 9] = ["l", "l_d", "h", "work", "group", "discretise", "velocity", "momentum", "displacement"];
 
 /// The orbit of the scene, for a parameter that follows it.
 fn of_scene(orbit: Option<&Spanned<DeValue<'_>>>, value: &Spanned<DeValue<'_>>) -> Result<Orbit, SpanMessage> {

@@ -9,7 +9,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::body::{INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
+use crate::file::body::{AnyInertia, INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
 use crate::file::effects::{
     DipoleTable, DragTable, EFFECTS, EffectEntry, MagneticDampingTable, RotorTable, Table, TorqueTable,
 };
@@ -82,14 +82,14 @@ fn effect<T: Table + Send + Sync + 'static>(key: &str, table: Option<T>) -> Opti
 
 /// Principal moments of a body, or the zeros of a point mass.
 #[derive(Deserialize)]
-#[serde(try_from = "Triple<quantity::Inertia>")]
+#[serde(try_from = "AnyInertia<Triple<quantity::Inertia>>")]
 struct PrincipalMoments(Option<Inertia>);
 
-impl TryFrom<Triple<quantity::Inertia>> for PrincipalMoments {
+impl TryFrom<AnyInertia<Triple<quantity::Inertia>>> for PrincipalMoments {
     type Error = String;
 
-    fn try_from(moments: Triple<quantity::Inertia>) -> Result<Self, String> {
-        if moments.value == Vector3::zeros() {
+    fn try_from(moments: AnyInertia<Triple<quantity::Inertia>>) -> Result<Self, String> {
+        if moments.value.value == Vector3::zeros() {
             return Ok(Self(None));
         }
         Moments::try_from(moments).map(|moments| Self(Some(moments.J)))

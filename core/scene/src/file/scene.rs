@@ -105,6 +105,8 @@ effects! { scene_file
     #[serde(default, deserialize_with = "taken")]
     pub(crate) lagrangian: Vec<DeclaredTerm>,
     #[serde(default, deserialize_with = "taken")]
+    pub(crate) hamiltonian: Vec<DeclaredTerm>,
+    #[serde(default, deserialize_with = "taken")]
     pub(crate) force: Vec<DeclaredTerm>,
     #[serde(default, deserialize_with = "taken")]
     pub(crate) nonholonomic: Vec<DeclaredTerm>,
@@ -164,7 +166,7 @@ impl SceneFile {
 
     /// The terms of the file's own.
     pub(crate) fn own(&self) -> impl Iterator<Item = &DeclaredTerm> {
-        self.lagrangian.iter().chain(&self.force).chain(&self.nonholonomic)
+        self.lagrangian.iter().chain(&self.hamiltonian).chain(&self.force).chain(&self.nonholonomic)
     }
 
     /// The name of the first force.
@@ -218,6 +220,7 @@ impl SceneFile {
     pub(crate) fn set_one(&mut self, one: &OverTime, numbers: &[f64]) -> bool {
         let own = match one.table.as_str() {
             "lagrangian" => &mut self.lagrangian,
+            "hamiltonian" => &mut self.hamiltonian,
             "force" => &mut self.force,
             "nonholonomic" => &mut self.nonholonomic,
             table => {
@@ -243,7 +246,7 @@ impl SceneFile {
 
     /// Order of the scene's own step; effects are kicks of second order.
     pub(crate) fn own_order(&self) -> u32 {
-        let is_free = self.effects().next().is_none() && self.own().next().is_none();
+        let is_free = self.effects().next().is_none() && self.own().next().is_none() && !self.has_devices();
         if is_free { self.kinetic().order() } else { 2 }
     }
 }
@@ -280,6 +283,7 @@ impl Parts for SceneFile {
     fn sum(&self) -> String {
         let body = self.body.iter().map(|_| "body".to_owned());
         let own = self.lagrangian.iter().map(|_| "a Lagrangian of its own".to_owned());
+        let hamiltonian = self.hamiltonian.iter().map(|_| "a Hamiltonian of its own".to_owned());
         let effects = self.effects().map(|(effect, _)| effect.name(" "));
         let force = self.force.iter().map(|_| "a force of its own".to_owned());
         let control = self.control.iter().map(|_| "a law".to_owned());
@@ -288,7 +292,7 @@ impl Parts for SceneFile {
             count => format!("{count} wheels"),
         });
         let constraint = self.nonholonomic.iter().map(|_| "a constraint of its own".to_owned());
-        let own = body.chain(own).chain(effects).chain(force).chain(constraint);
+        let own = body.chain(own).chain(hamiltonian).chain(effects).chain(force).chain(constraint);
         own.chain(control).chain(wheels).collect::<Vec<_>>().join(" + ")
     }
 

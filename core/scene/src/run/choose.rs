@@ -89,7 +89,11 @@ fn with_devices(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop
     let Data { sum, numbers } = Data::of(&file, &J)?;
     let whole = Whole::of(sum, &numbers, h, Method::default()).map_err(whole_error)?;
     let body = LibraryBody::of(&file, J);
-    Devices::new(file, J, body, whole).map(AnyStepper::new).map_err(Stop::Setup)
+    let shares = match file.run.method {
+        Scheme::Composition(scheme) => scheme.stages().collect(),
+        _ => vec![1.0],
+    };
+    Devices::new(file, J, body, (whole, &shares)).map(AnyStepper::new).map_err(Stop::Setup)
 }
 
 /// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.

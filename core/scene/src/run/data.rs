@@ -42,14 +42,16 @@ impl LibraryBody {
     }
 }
 
-/// The sum of this body, if any, and of the file's Lagrangians, effects, forces and constraints, which is derived once per process.
+/// The sum of this body, if any, and of the file's Lagrangians, effects, forces and constraints, or its Hamiltonian, which is
+/// derived once per process.
 fn sum(file: &SceneFile, body: Option<&LibraryBody>) -> Result<Option<&'static Declaration>, LateError> {
     let body = body.map(|body| Declaration::parse(body.text)).into_iter();
-    let [lagrangians, forces, constraints] =
-        [&file.lagrangian, &file.force, &file.nonholonomic].map(|own| own.iter().map(|own| Ok(own.declaration)));
+    let [lagrangians, hamiltonians, forces, constraints] =
+        [&file.lagrangian, &file.hamiltonian, &file.force, &file.nonholonomic]
+            .map(|own| own.iter().map(|own| Ok(own.declaration)));
     let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
-    let terms =
-        body.chain(lagrangians).chain(listed).chain(forces).chain(constraints).collect::<Result<Vec<_>, _>>()?;
+    let own = body.chain(lagrangians).chain(hamiltonians);
+    let terms = own.chain(listed).chain(forces).chain(constraints).collect::<Result<Vec<_>, _>>()?;
     if terms.is_empty() { Ok(None) } else { Declaration::sum(&terms).map(Some) }
 }
 
@@ -92,12 +94,13 @@ pub(crate) fn with_wheels(file: &SceneFile, J: &Inertia) -> Inertia {
 
 /// The parameters of all terms at a time, in order; the second inertia is that with the wheels.
 pub(crate) fn numbers(file: &SceneFile, [J, whole]: [&Inertia; 2], body: Option<&LibraryBody>, time: f64) -> Vec<f64> {
-    let [lagrangians, forces, constraints] = [&file.lagrangian, &file.force, &file.nonholonomic]
-        .map(|own| own.iter().flat_map(|own| own.numbers.iter().copied()));
+    let [lagrangians, hamiltonians, forces, constraints] =
+        [&file.lagrangian, &file.hamiltonian, &file.force, &file.nonholonomic]
+            .map(|own| own.iter().flat_map(|own| own.numbers.iter().copied()));
     let body = body.iter().flat_map(|body| body.numbers.iter().copied());
     let of = |key: &str| if key == "gravity_gradient" { whole } else { J };
     let listed = file.effects().flat_map(|(effect, table)| table.numbers(of(effect.key), file.at(time)));
-    body.chain(lagrangians).chain(listed).chain(forces).chain(constraints).collect()
+    body.chain(lagrangians).chain(hamiltonians).chain(listed).chain(forces).chain(constraints).collect()
 }
 
 pub(crate) fn late_error(error: &LateError) -> Stop {

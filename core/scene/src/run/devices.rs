@@ -1,6 +1,6 @@
 //! Steps of a body with laws and wheels: torques that are sampled and held, and momenta that wheels exchange with the body.
 
-use std::cell::RefCell;
+use std::cell::{Ref, RefCell};
 
 use liestep::mechanics::Inertia;
 use liestep::motion::{Layout, Propagator, StepReport};
@@ -25,8 +25,9 @@ pub(crate) struct Devices {
     /// The moments with wheels that are locked to the body.
     locked: Inertia,
     body: Option<LibraryBody>,
-    /// The inner stepper, with the numbers of the last step.
-    whole: RefCell<Whole>,
+    /// The inner steppers of the stages, with the numbers of the last step, and their lengths as shares of it: one stage, or
+    /// those of a composition.
+    stages: Vec<(f64, RefCell<Whole>)>,
     layout: Layout,
     h: f64,
 }
@@ -46,7 +47,8 @@ struct Memory {
     part: f64,
 }
 
-const OF_THIS_LAYOUT: StepError = StepError::NonFinite { what: "state of this layout" };
+/// Most rounds for the torque of a law at the end of a step.
+const MOST_ROUNDS: u32 = 200;
 const OF_A_LAW: StepError = StepError::NonFinite { what: "torque of a law" };
 
 impl Memory {
@@ -67,19 +69,24 @@ impl Memory {
 }
 
 impl Devices {
-    /// The stepper of a file with the terms that its devices need, whose parameters are those of `whole`.
+    /// The stepper of a file with the terms that its devices need, whose parameters are those of `whole`; with stages of these
+    /// shares of a step.
     pub(crate) fn new(
         file: SceneFile,
         J: Inertia,
         body: Option<LibraryBody>,
-        whole: Whole,
+        (whole, shares): (Whole, &[f64]),
     ) -> Result<Self, SetupError> {
         let h = whole.step_size();
         if !fit(&file.control, &file.wheel, h) {
             return Err(SetupError::Method { cause: "samples the laws between its steps" });
         }
+        if shares.len() > 1 && !whole.declaration().is_self_adjoint {
+            return Err(SetupError::NotSelfAdjoint);
+        }
         let (layout, locked) = (whole.layout().clone(), with_wheels(&file, &J));
-        let mut all = Self { file: RefCell::new(file), J, locked, body, layout, whole: whole.into(), h };
+        let stages = shares.iter().map(|&share| (share, RefCell::new(whole.clone()))).collect();
+        let mut all = Self { file: RefCell::new(file), J, locked, body, layout, stages, h };
         all.layout.memory += all.length();
         Ok(all)
     }
@@ -93,6 +100,11 @@ impl Devices {
     fn counts(&self) -> (usize, usize) {
         let file = self.file.borrow();
         (file.wheel.len(), file.control.len())
+    }
+
+    /// The inner stepper of the first stage.
+    fn whole(&self) -> Ref<'_, Whole> {
+        self.stages[0].1.borrow()
     }
 
     fn memory(&self, state: &[f64]) -> Memory {
@@ -111,10 +123,6 @@ impl Devices {
         inner[..last].iter().copied().chain(memory.entries()).chain([inner[last]]).collect()
     }
 
-    fn checked<'a>(&self, state: &'a [f64]) -> Result<&'a [f64], StepError> {
-        if state.len() == self.layout.state() { Ok(state) } else { Err(OF_THIS_LAYOUT) }
-    }
-
     /// The parameters of a step of this start and length with momenta of the wheels and the held torque; with the length zero
     /// those of a time.
     fn numbers(
@@ -126,22 +134,24 @@ impl Devices {
         let mut file = self.file.borrow_mut();
         let is_known = file.set_over([start, length]);
         let (rotor, own, spin) = (file.rotor, file.torque, spin(&file.wheel, momenta));
-        if let Some(rotor) = &mut file.rotor {
+        let SceneFile { control: controls, rotor: of_wheels, torque: of_laws, .. } = &mut *file;
+        if let Some(rotor) = of_wheels {
             rotor.spin.value += spin;
         }
-        if let Some(own) = &mut file.torque {
-            own.torque.value += torques.iter().sum::<Vector3<f64>>();
+        if let Some(own) = of_laws {
+            let held = controls.iter().zip(torques).filter(|(control, _)| !control.controller.is_at_ends);
+            own.torque.value += held.map(|(_, torque)| torque).sum::<Vector3<f64>>();
         }
         let all = numbers(&file, [&self.J, &self.locked], self.body.as_ref(), start + length * 0.5);
         (file.rotor, file.torque) = (rotor, own);
-        let all = self.whole.borrow().declaration().described(&all).ok().filter(|_| is_known);
+        let all = self.whole().declaration().described(&all).ok().filter(|_| is_known);
         all.filter(|numbers| numbers.iter().all(|number| number.is_finite())).ok_or(OF_A_LAW)
     }
 
     /// The angular velocity of a state, body frame; NaN if it isn't known.
     fn rate(&self, state: &[f64], memory: &Memory) -> Vector3<f64> {
         let numbers = self.numbers([self.time(state), 0.0], &memory.momenta, &memory.torques);
-        let rate = numbers.map(|numbers| self.whole.borrow().velocity_with(&self.inner(state), &numbers));
+        let rate = numbers.map(|numbers| self.whole().velocity_with(&self.inner(state), &numbers));
         rate.map_or_else(|_| Vector3::repeat(f64::NAN), |rate| Vector3::from_column_slice(&rate))
     }
 
@@ -152,7 +162,8 @@ impl Devices {
         let file = self.file.borrow();
         let now = Time { time: self.time(state), orbit: file.orbit.as_ref() };
         let seen = &Seen { now, attitude: Matrix3::from_row_slice(&state[..9]), velocity };
-        let is_due = |law: &Controller| stride(law, self.h).is_some_and(|stride| steps % stride == 0.0);
+        let is_due =
+            |law: &Controller| !law.is_at_ends && stride(law, self.h).is_some_and(|stride| steps % stride == 0.0);
         let mut place = 0;
         let mut taken = |law: &Controller, speed: Option<f64>| {
             let places = place..place + law.count_of_readings();
@@ -179,6 +190,64 @@ impl Devices {
         if is_finite { Ok(()) } else { Err(OF_A_LAW) }
     }
 
+    /// Writes the torques of the laws at both ends of steps into a memory, at a state of the inner stepper and at a time, s, with
+    /// these momenta of the wheels; returns their sum, N m.
+    fn at_ends(
+        &self,
+        (inner, time): (&[f64], f64),
+        momenta: &[f64],
+        memory: &mut Memory,
+    ) -> Result<Vector3<f64>, StepError> {
+        let numbers = self.numbers([time, 0.0], momenta, &memory.torques)?;
+        let velocity = Vector3::from_column_slice(&self.whole().velocity_with(inner, &numbers));
+        let file = self.file.borrow();
+        let now = Time { time, orbit: file.orbit.as_ref() };
+        let seen = &Seen { now, attitude: Matrix3::from_row_slice(&inner[..9]), velocity };
+        let mut sum = Vector3::zeros();
+        for (control, place) in file.control.iter().zip(&mut memory.torques) {
+            if !control.controller.is_at_ends {
+                continue;
+            }
+            let readings = control.controller.readings(seen);
+            if let Value::Vector(value) = control.controller.value(seen, (&readings, &[]), None) {
+                *place = control.limited(value);
+                sum += *place;
+            }
+        }
+        if sum.iter().all(|part| part.is_finite()) { Ok(sum) } else { Err(OF_A_LAW) }
+    }
+
+    /// Gives a state of the inner stepper half of the impulse of these laws, for a step of this length, s, that begins or ends
+    /// there. The end takes the torque of the state behind it, so that a step of `−h` undoes one of `h`.
+    fn push(
+        &self,
+        inner: &mut [f64],
+        [time, length]: [f64; 2],
+        momenta: &[f64],
+        (memory, is_end): (&mut Memory, bool),
+    ) -> Result<(), StepError> {
+        if !self.file.borrow().control.iter().any(|control| control.controller.is_at_ends) {
+            return Ok(());
+        }
+        let place = self.layout.momentum();
+        let before = Vector3::from_column_slice(&inner[place.clone()]);
+        let mut torque = self.at_ends((inner, time), momenta, memory)?;
+        for _ in 0..MOST_ROUNDS {
+            let pushed = before + torque * (length * 0.5);
+            inner[place.clone()].copy_from_slice(pushed.as_slice());
+            if !is_end {
+                return Ok(());
+            }
+            let again = self.at_ends((inner, time), momenta, memory)?;
+            let changed = (again - torque).norm() * length.abs() * 0.5;
+            torque = again;
+            if changed <= 4.0 * f64::EPSILON * pushed.norm().max(before.norm()) {
+                return Ok(());
+            }
+        }
+        Err(StepError::NonFinite { what: "torque of a law at the end of a step, which is too strong for its length" })
+    }
+
     /// The torques of the motors in a step of this start and length from a state with this velocity, within their limits, N m.
     fn motors(&self, memory: &Memory, velocity: &Vector3<f64>, [start, length]: [f64; 2]) -> Vec<f64> {
         let of = |(number, wheel): (usize, &Wheel)| {
@@ -201,7 +270,8 @@ impl Devices {
         self.file.borrow().wheel.iter().enumerate().map(of).collect()
     }
 
-    /// A step of this length, s, from a state; returns the inner state and the memory.
+    /// A step of this length, s, from a state; returns the inner state and the memory. Torques are held in all of its stages, and
+    /// each has the means of the wheels' momenta over its own time.
     fn advance(&self, state: &[f64], length: f64) -> Result<(Vec<f64>, Memory, StepReport), StepError> {
         let mut memory = self.memory(state);
         let velocity = self.rate(state, &memory);
@@ -213,14 +283,29 @@ impl Devices {
         if !motors.iter().all(|torque| torque.is_finite()) {
             return Err(OF_A_LAW);
         }
-        let mean = memory.momenta.iter().zip(&motors).map(|(momentum, torque)| momentum + torque * length * 0.5);
-        let numbers = self.numbers(span, &mean.collect::<Vec<_>>(), &memory.torques)?;
-        let mut whole = self.whole.borrow_mut();
-        whole.take(&numbers, length).map_err(|_| OF_A_LAW)?;
-        let mut next = whole.adopt(&self.inner(state));
-        let report = whole.step(&mut next)?;
+        let (mut next, mut begin, mut iterations) = (self.inner(state), 0.0, 0);
+        for (share, whole) in &self.stages {
+            let [start, length] = [span[0] + length * begin, length * share];
+            let middle = start + length * 0.5 - span[0];
+            let mean = memory.momenta.iter().zip(&motors).map(|(momentum, torque)| momentum + torque * middle);
+            let numbers = self.numbers([start, length], &mean.collect::<Vec<_>>(), &memory.torques)?;
+            let at = |offset: f64| -> Vec<f64> {
+                memory.momenta.iter().zip(&motors).map(|(momentum, torque)| momentum + torque * offset).collect()
+            };
+            let [first, last] = [start - span[0], start + length - span[0]].map(at);
+            self.push(&mut next, [start, length], &first, (&mut memory, false))?;
+            {
+                let mut whole = whole.borrow_mut();
+                whole.take(&numbers, length).map_err(|_| OF_A_LAW)?;
+                let mut stage = whole.adopt(&next);
+                iterations += whole.step(&mut stage)?.iterations;
+                next = stage.to_vec();
+            }
+            self.push(&mut next, [start + length, length], &last, (&mut memory, true))?;
+            begin += share;
+        }
         memory.momenta.iter_mut().zip(&motors).for_each(|(momentum, torque)| *momentum += torque * length);
-        Ok((next.to_vec(), memory, report))
+        Ok((next, memory, StepReport::of(iterations)))
     }
 }
 
@@ -240,7 +325,7 @@ impl Propagator for Devices {
         let momenta: Vec<f64> = self.file.borrow().wheel.iter().map(momentum).collect();
         let numbers = self.numbers([0.0, 0.0], &momenta, &[]);
         let numbers = numbers.map_err(|_| SetupError::NonFinite { what: "momentum of a wheel" })?;
-        let whole = self.whole.borrow().with(&numbers, self.h)?;
+        let whole = self.whole().with(&numbers, self.h)?;
         let inner = whole.start(attitude, velocity)?;
         // The sample before the first is that of the start.
         let file = self.file.borrow();
@@ -248,11 +333,16 @@ impl Propagator for Devices {
         let seen = Seen { now, attitude: Matrix3::from_row_slice(&inner[..9]), velocity: rate };
         let readings = readings(&file.control, &file.wheel, &seen);
         let (motors, torques) = (vec![0.0; momenta.len()], vec![Vector3::zeros(); file.control.len()]);
-        Ok(Self::with_memory(&inner, &Memory { momenta, motors, torques, readings, part: 0.0 }))
+        drop(file);
+        let mut memory = Memory { momenta, motors, torques, readings, part: 0.0 };
+        let momenta = memory.momenta.clone();
+        let known = self.at_ends((&inner, 0.0), &momenta, &mut memory);
+        known.map_err(|_| SetupError::NonFinite { what: "torque of a law" })?;
+        Ok(Self::with_memory(&inner, &memory))
     }
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        let (mut next, mut memory, report) = self.advance(self.checked(state)?, self.h)?;
+        let (mut next, mut memory, report) = self.advance(self.layout.checked(state)?, self.h)?;
         let (steps, last) = (state[state.len() - 1], next.len() - 1);
         next[last] = steps + 1.0;
         memory.part = 0.0;
@@ -260,23 +350,13 @@ impl Propagator for Devices {
         Ok(report)
     }
 
-    fn run(&self, state: &mut [f64], steps: u64) -> Result<u64, StepError> {
-        let mut next = self.checked(state)?.to_vec();
-        let mut iterations = 0;
-        for _ in 0..steps {
-            iterations += u64::from(self.step(&mut next)?.iterations);
-        }
-        state.copy_from_slice(&next);
-        Ok(iterations)
-    }
-
     fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
         let length = self.h * fraction;
         // So small a change would be lost in rounding. NaN isn't tiny.
         if fraction.abs() < f64::EPSILON * f64::EPSILON {
-            return Ok(self.checked(state)?.into());
+            return Ok(self.layout.checked(state)?.into());
         }
-        let (mut next, mut memory, _) = self.advance(self.checked(state)?, length)?;
+        let (mut next, mut memory, _) = self.advance(self.layout.checked(state)?, length)?;
         let last = next.len() - 1;
         next[last] = state[state.len() - 1];
         memory.part += length;
@@ -289,15 +369,18 @@ impl Propagator for Devices {
         else {
             return nowhere();
         };
-        // A momentum is that of the body whose wheels are locked to it, and of their speeds.
-        let file = self.file.borrow();
-        let wheels = &file.wheel[..];
-        let speeds: Vector3<f64> = wheels.iter().map(|wheel| wheel.axis * (wheel.inertia * wheel.speed)).sum();
-        let rotor = file.rotor.map(|rotor| rotor.spin.value).unwrap_or_default();
-        let locked = self.locked.as_matrix().try_inverse();
-        drop(file);
-        let velocity = locked.map(|inverse| inverse * (Vector3::from_column_slice(momentum) - speeds - rotor));
-        velocity.and_then(|velocity| self.start(attitude, velocity.as_slice()).ok()).unwrap_or_else(nowhere)
+        // The momentum is affine in the velocity, with the wheels at their speeds relative to the body.
+        let at = |velocity: Vector3<f64>| {
+            let state = self.start(attitude, velocity.as_slice()).ok()?;
+            Some(Vector3::from_column_slice(&state[self.layout.momentum()]))
+        };
+        let velocity = || {
+            let rest = at(Vector3::zeros())?;
+            let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| Some(at(axis)? - rest));
+            let locked = Matrix3::from_columns(&[x?, y?, z?]).try_inverse()?;
+            Some(locked * (Vector3::from_column_slice(momentum) - rest))
+        };
+        velocity().and_then(|velocity| self.start(attitude, velocity.as_slice()).ok()).unwrap_or_else(nowhere)
     }
 
     fn step_size(&self) -> f64 {
@@ -305,23 +388,23 @@ impl Propagator for Devices {
     }
 
     fn time(&self, state: &[f64]) -> f64 {
-        self.checked(state).map_or(f64::NAN, |state| {
+        self.layout.checked(state).map_or(f64::NAN, |state| {
             let last = state.len() - 1;
             self.h * state[last] + state[last - 1]
         })
     }
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
-        let found = self.checked(state).map(|state| self.rate(state, &self.memory(state)));
+        let found = self.layout.checked(state).map(|state| self.rate(state, &self.memory(state)));
         let found = found.unwrap_or_else(|_| Vector3::repeat(f64::NAN));
         velocity.iter_mut().zip(found.iter()).for_each(|(place, part)| *place = *part);
     }
 
     fn energy(&self, state: &[f64]) -> f64 {
-        let Ok(state) = self.checked(state) else { return f64::NAN };
+        let Ok(state) = self.layout.checked(state) else { return f64::NAN };
         let memory = self.memory(state);
         let numbers = self.numbers([self.time(state), 0.0], &memory.momenta, &memory.torques);
-        let energy = |numbers: Vec<f64>| self.whole.borrow().energy_with(&self.inner(state), &numbers);
+        let energy = |numbers: Vec<f64>| self.whole().energy_with(&self.inner(state), &numbers);
         let of_body = numbers.map_or(f64::NAN, energy);
         let file = self.file.borrow();
         let of_wheel = |(wheel, momentum): (&Wheel, &f64)| momentum * momentum / (2.0 * wheel.inertia);
@@ -329,13 +412,13 @@ impl Propagator for Devices {
     }
 
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
-        match self.checked(state) {
-            Ok(state) => self.whole.borrow().spatial_momentum(&self.inner(state), momentum),
+        match self.layout.checked(state) {
+            Ok(state) => self.whole().spatial_momentum(&self.inner(state), momentum),
             Err(_) => momentum.fill(f64::NAN),
         }
     }
 
     fn defect(&self, state: &[f64]) -> f64 {
-        self.checked(state).map_or(f64::NAN, |state| self.whole.borrow().defect(&self.inner(state)))
+        self.layout.checked(state).map_or(f64::NAN, |state| self.whole().defect(&self.inner(state)))
     }
 }

@@ -2,7 +2,7 @@
 
 use liestep::motion::Propagator as _;
 use liestep::with::{Method, Scheme};
-use liestep_derivation::ParameterKind;
+use liestep_derivation::{ParameterKind, Role};
 use liestep_late::{Declaration, Whole, numbered};
 
 use crate::file::common::Parts as _;
@@ -109,6 +109,9 @@ impl Model {
         let said = |error: &dyn std::fmt::Display| error.to_string();
         let J = inertia(file).map_err(|error| said(&error))?;
         let Data { sum, numbers } = Data::of(file, &J).map_err(|error| said(&error))?;
+        if sum.role == Role::Hamiltonian {
+            return Err("it has a Hamiltonian, whose steps are made by the library alone".to_owned());
+        }
         if !sum.is_quadratic {
             return Err("its Lagrangian isn't quadratic in the velocity".to_owned());
         }

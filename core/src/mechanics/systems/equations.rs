@@ -223,8 +223,6 @@ where
     E: DiscreteLagrangian,
     E::Retraction: Retraction<P::Group>,
 {
-    const SELF_ADJOINT: bool = E::SELF_ADJOINT;
-
     summed! {
         total: l_d discrete_energy -> Self::Scalar;
         gathered: right_momentum left_momentum diamond legendre_minus -> Vector<Self>;

@@ -8,18 +8,20 @@ use alloc::vec::Vec;
 
 use crate::error::{SetupError, StepError};
 use crate::gradients::{ChangeOf, Linearisable, Pass, Stage as Linear};
-use crate::mechanics::{DiscreteLagrangian, Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
+use crate::groups::Advected as _;
+use crate::mechanics::{Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
     Cost, MotionOf, OwnStep, Plan, Steerable, StepReport, Stepper, SumsOf, Variable, beyond_solvable, half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
 use crate::solving::Guess;
-use nalgebra::SimdBool as _;
+use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _};
 
 /// The plan of [`Stepper::composed`](crate::Stepper::composed): a step is `Φ_{γ_s h} ∘ … ∘ Φ_{γ_1 h}`, where `Φ_h` is the step of a self-adjoint Lagrangian.
 ///
 /// The order is that of the [`CompositionScheme`]. A composition preserves the invariants of `Φ_h`: the Poisson
-/// structure, the momentum maps and the Casimirs exactly, the energy nearly. A step of `−h` undoes one of `h`.
+/// structure, the momentum maps and the Casimirs exactly, the energy nearly. A step of `−h` undoes one of `h`. Forces may be
+/// beside it that are [self-adjoint](crate::mechanics::Facts::is_self_adjoint), as those of the library are.
 ///
 /// # Contract
 ///
@@ -88,6 +90,8 @@ pub struct Composition<S: Effect> {
 struct Stage<T> {
     #[shared]
     substep: usize,
+    /// The length as a share of the step.
+    share: T,
     /// The factor of this stage's coordinates in a guess without the previous stage.
     scale: T,
     /// The factor of this stage's coordinates in the linear extrapolation.
@@ -105,10 +109,13 @@ impl<S: Effect> Stepper<S> {
     /// The errors of [`Stepper::new`], for a substep.
     pub fn composed(scene: S, h: Scalar<S>, scheme: CompositionScheme) -> Result<Stepper<S, Composition<S>>, SetupError>
     where
-        S: DiscreteLagrangian + Regular,
+        S: Regular,
     {
         const {
-            assert!(S::SELF_ADJOINT, "a composition needs a Lagrangian with l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)");
+            assert!(
+                S::FACTS.is_self_adjoint,
+                "a composition needs a Lagrangian with l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h), and such forces"
+            );
         }
         Self::composed_if_symmetric(scene, h, scheme)
     }
@@ -120,9 +127,9 @@ impl<S: Effect> Stepper<S> {
         scheme: CompositionScheme,
     ) -> Result<Stepper<S, Composition<S>>, SetupError>
     where
-        S: DiscreteLagrangian + Regular,
+        S: Regular,
     {
-        if !S::SELF_ADJOINT {
+        if !S::FACTS.is_self_adjoint {
             return Err(SetupError::NotSelfAdjoint);
         }
         let plan = Composition::new(&scene, h, scheme)?;
@@ -142,6 +149,31 @@ impl<S: Effect> Composition<S> {
         });
         let stages = stages.collect();
         Ok(Self { scheme, h, substeps, stages })
+    }
+
+    /// Makes a step. Before each stage `see` is shown the motion, and the begin and the length of the stage as shares of the step.
+    #[hot]
+    fn each<M: SumsOf<S>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Guess<Vector<S>>,
+        see: &mut impl FnMut(&mut M, [Scalar<S>; 2]) -> Result<(), StepError>,
+    ) -> Result<StepReport, StepError> {
+        let (mut next, mut guess) = (*motion, *kept);
+        let (mut iterations, mut end) = (0, real::<Scalar<S>>(0.0));
+        for stage in &self.stages {
+            end += stage.share;
+            see(&mut next, [end - stage.share, stage.share])?;
+            let stepped = self.substeps[stage.substep].increment_from(scene, &next, &guess.next)?;
+            next.proceed(&stepped.increment, &stepped.change, (stepped.momentum, stepped.advected));
+            let half = stepped.half;
+            guess = Guess { half, next: stage.half_guess(half, stepped.far, guess.half) };
+            iterations += stepped.iterations;
+        }
+        next.finish(|| scene.advected());
+        (*motion, *kept) = (next, guess);
+        Ok(StepReport::of(iterations))
     }
 
     /// The coefficients.
@@ -172,18 +204,47 @@ impl<S: Effect> Plan<S> for Composition<S> {
     /// The report's iterations are the sum over all stages.
     #[hot]
     fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
-        let (mut next, mut guess) = (*motion, *kept);
-        let mut iterations = 0;
-        for stage in &self.stages {
-            let stepped = self.substeps[stage.substep].increment_from(scene, &next, &guess.next)?;
-            next.proceed(&stepped.increment, &stepped.change, (stepped.momentum, stepped.advected));
-            let half = stepped.half;
-            guess = Guess { half, next: stage.half_guess(half, stepped.far, guess.half) };
-            iterations += stepped.iterations;
+        self.each(scene, motion, kept, &mut |_, _| Ok(()))
+    }
+
+    /// Each stage takes the values of its own middle.
+    #[hot]
+    fn step_seeing(
+        &self,
+        scene: &S,
+        motion: &mut MotionOf<S>,
+        kept: &mut Self::Kept,
+        values: &mut impl FnMut([Scalar<S>; 2]) -> Result<S::Advected, StepError>,
+    ) -> Result<StepReport, StepError> {
+        self.each(scene, motion, kept, &mut |motion: &mut MotionOf<S>, part| {
+            motion.advected = values(part)?.seen_from(&motion.attitude);
+            Ok(())
+        })
+    }
+
+    /// A part of a step is a step of its length.
+    fn part_seeing(
+        &self,
+        scene: &S,
+        motion: &MotionOf<S>,
+        _kept: &Self::Kept,
+        fraction: Scalar<S>,
+        values: &mut impl FnMut([Scalar<S>; 2]) -> Result<S::Advected, StepError>,
+    ) -> Result<MotionOf<S>, StepError> {
+        let (mut next, size) = (*motion, fraction.simd_abs());
+        // So small a change would be lost in rounding.
+        let least = Scalar::<S>::simd_default_epsilon() * Scalar::<S>::simd_default_epsilon();
+        if size.simd_lt(least).all() {
+            return Ok(next);
         }
-        next.finish(|| scene.advected());
-        (*motion, *kept) = (next, guess);
-        Ok(StepReport::of(iterations))
+        let part = self.refolded(scene, self.h * fraction);
+        let part = part.map_err(|_| StepError::NonFinite { what: "part of the step" })?;
+        let mut kept = part.keep(scene, &next);
+        let made =
+            part.step_seeing(scene, &mut next, &mut kept, &mut |shares| values(shares.map(|share| share * size)));
+        made.map_err(|error| part.explained(error, scene, motion, &kept))?;
+        next.steps = motion.steps;
+        Ok(next)
     }
 
     /// [`StepError::BeyondSolvable`] reports the limit of the whole step, not of a substep.
@@ -236,7 +297,13 @@ impl<T: Real> Stage<T> {
         let ratio = (this + next) / (before + this);
         let ratio = if ratio.abs() <= FARTHEST_EXTRAPOLATION { ratio } else { 0.0 };
         let scale = next / this;
-        Self { substep, scale: real(scale), last: real(scale * (1.0 + ratio)), earlier: real(-ratio * next / before) }
+        Self {
+            substep,
+            share: real(this),
+            scale: real(scale),
+            last: real(scale * (1.0 + ratio)),
+            earlier: real(-ratio * next / before),
+        }
     }
 
     #[hot]

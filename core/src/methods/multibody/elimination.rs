@@ -31,13 +31,21 @@
 //!
 //! for all neighbours `m` and `n` of `c`. Between neighbours in a tree only their own blocks are filled.
 //!
+//! A body on a ball joint that no term couples has a `Ball`, in which blocks of three do all this.
+//!
 //! Matrices have room for six functions; the loops over those that a joint has are compiled for each number of them.
+
+use alloc::vec::Vec;
 
 use nalgebra::{Matrix6, SMatrix, Vector2, Vector6};
 
+use super::ball::add_blocks;
+use super::ends::Ends;
 use super::graph::Tree;
-use super::nodes::{Block, Ends, Loop, Node, Unknowns, add};
-use crate::numbers::{Coordinates as _, Pattern};
+use super::nodes::{Block, Loop, Node, Pair, Unknowns, add};
+use super::square::{shift_of, turn_of, write};
+use super::turning::inverted;
+use crate::numbers::{Coordinates as _, OnRegisters, Pattern, Register, on_registers};
 
 /// Calls a function that is compiled for each number of functions of a joint.
 macro_rules! by_rows {
@@ -54,36 +62,75 @@ macro_rules! by_rows {
 }
 
 /// Factorises all matrices.
-pub(super) fn factorise(tree: &Tree, nodes: &mut [Node], loops: &mut [Loop]) {
+pub(super) fn factorise(tree: &Tree, nodes: &mut [Node], loops: &mut [Loop], pairs: &mut Vec<Pair>) {
     for closing in &mut *loops {
         closing.free = free(closing, nodes);
     }
-    for &k in tree.order.iter().rev() {
-        let node = &mut nodes[k];
-        (node.matrix, node.determinant) = Vector6::factorise_apart(&node.matrix, Pattern::WHOLE);
-        for block in node.blocks.iter_mut().filter(|block| block.neighbour.is_coupled) {
-            block.z = solved(&node.matrix, &block.own);
-        }
-        if node.rows > 0 {
-            by_rows!(node.rows, eliminate_joint(node));
-        }
-        // Additions to other nodes; the blocks of this one are complete.
-        let blocks = core::mem::take(&mut node.blocks);
-        for (m, row) in blocks.iter().enumerate() {
-            for column in &blocks {
-                let (node, is_parent) = (&nodes[k], m == 0);
-                let added = match node.rows {
-                    0 => -(row.other * column.z),
-                    rows => by_rows!(rows, complement(node, is_parent, row, column)),
-                };
-                add(nodes, [row.neighbour.body, column.neighbour.body], &added);
+    on_registers(Factorisation { tree, nodes });
+    if !loops.is_empty() {
+        close(tree, nodes, loops, pairs);
+    }
+}
+
+/// The elimination of all bodies from the ends of the trees.
+struct Factorisation<'a> {
+    tree: &'a Tree,
+    nodes: &'a mut [Node],
+}
+
+#[hot]
+impl OnRegisters for Factorisation<'_> {
+    type Output = ();
+
+    fn run<R: Register>(self, zero: R) {
+        let Self { tree, nodes } = self;
+        for &k in tree.order.iter().rev() {
+            let node = &mut nodes[k];
+            let Some(ball) = &mut node.ball else {
+                eliminate(nodes, k);
+                continue;
+            };
+            node.determinant = ball.factorise(zero);
+            if let Some(turning) = &ball.turning {
+                (node.pivot, node.of_joint) = (turning.pivot, turning.determinant);
+            }
+            if let Some(parent) = tree.members[k].parent
+                && let Ok([node, parent]) = nodes.get_disjoint_mut([k, parent])
+                && let Some(ball) = &node.ball
+            {
+                let added = ball.of_parent(zero);
+                match &mut parent.ball {
+                    Some(ball) => ball.add(zero, added),
+                    None => add_blocks(&mut parent.matrix, added),
+                }
             }
         }
-        nodes[k].blocks = blocks;
     }
-    if !loops.is_empty() {
-        close(tree, nodes, loops);
+}
+
+/// Eliminates a body, and then its joint, of any functions and with any neighbours.
+fn eliminate(nodes: &mut [Node], k: usize) {
+    let node = &mut nodes[k];
+    (node.matrix, node.determinant) = Vector6::factorise_apart(&node.matrix, Pattern::WHOLE);
+    for block in node.blocks.iter_mut().filter(|block| block.neighbour.is_coupled) {
+        block.z = solved(&node.matrix, &block.own);
     }
+    if node.rows > 0 {
+        by_rows!(node.rows, eliminate_joint(node));
+    }
+    // Additions to other nodes; the blocks of this one are complete.
+    let blocks = core::mem::take(&mut node.blocks);
+    for (m, row) in blocks.iter().enumerate() {
+        for column in &blocks {
+            let (node, is_parent) = (&nodes[k], m == 0);
+            let added = match node.rows {
+                0 => -(row.other * column.z),
+                rows => by_rows!(rows, complement(node, is_parent, row, column)),
+            };
+            add(nodes, [row.neighbour.body, column.neighbour.body], &added);
+        }
+    }
+    nodes[k].blocks = blocks;
 }
 
 /// The solutions for all columns of the right-hand side.
@@ -98,7 +145,7 @@ fn solved<const K: usize>(factors: &Matrix6<f64>, right: &SMatrix<f64, 6, K>) ->
 
 /// Eliminates a body's joint.
 fn eliminate_joint<const K: usize>(node: &mut Node) {
-    let [own, of_parent] = &node.ends;
+    let [own, of_parent] = &*node.ends;
     let x = solved(&node.matrix, &own.before.fixed_columns::<K>(0).into_owned());
     let after = own.after.fixed_columns::<K>(0);
     let s: SMatrix<f64, K, K> = after.tr_mul(&x);
@@ -144,7 +191,7 @@ fn free(closing: &Loop, nodes: &[Node]) -> Vector6<f64> {
 }
 
 /// The border's columns `Y`, and the factors of `S_L`.
-fn close(tree: &Tree, nodes: &[Node], loops: &mut [Loop]) {
+fn close(tree: &Tree, nodes: &[Node], loops: &mut [Loop], pairs: &mut Vec<Pair>) {
     let bodies = nodes.len();
     for closing in &mut *loops {
         closing.columns.fill(Vector6::zeros());
@@ -155,7 +202,7 @@ fn close(tree: &Tree, nodes: &[Node], loops: &mut [Loop]) {
                 closing.columns[row * bodies + body] += closing.ends[side].before.column(row);
             }
             let all = row * bodies..(row + 1) * bodies;
-            substitute(tree, nodes, &mut closing.columns[all.clone()], &mut closing.multipliers[all]);
+            substitute(tree, nodes, &mut closing.columns[all.clone()], &mut closing.multipliers[all], pairs);
         }
     }
     for i in 0..loops.len() {
@@ -192,8 +239,8 @@ fn close(tree: &Tree, nodes: &[Node], loops: &mut [Loop]) {
 /// Solves for these right-hand sides by the factors. Returns the summed squares of the `w`, of turns and of shifts: in
 /// a stiffly constrained system the solution is a small difference of large `w`, which sets its rounding error.
 pub(super) fn solve(tree: &Tree, nodes: &[Node], loops: &[Loop], unknowns: &mut Unknowns) -> Vector2<f64> {
-    let Unknowns { bodies, joints, loops: of_loops } = unknowns;
-    let size = substitute(tree, nodes, bodies, joints);
+    let Unknowns { bodies, joints, loops: of_loops, pairs } = unknowns;
+    let size = substitute(tree, nodes, bodies, joints, pairs);
     for (k, closing) in loops.iter().enumerate() {
         // The right-hand sides `C_L x + g`, reduced by the rows above.
         let mut right = of_loops[k];
@@ -232,31 +279,99 @@ fn substitute(
     nodes: &[Node],
     of_bodies: &mut [Vector6<f64>],
     of_joints: &mut [Vector6<f64>],
+    pairs: &mut Vec<Pair>,
 ) -> Vector2<f64> {
-    let mut size = Vector2::zeros();
-    for &k in tree.order.iter().rev() {
-        let node = &nodes[k];
-        let w = Vector6::solve_apart(&node.matrix, Pattern::WHOLE, &of_bodies[k]);
-        of_bodies[k] = w;
-        size += Vector2::new(w.fixed_rows::<3>(0).norm_squared(), w.fixed_rows::<3>(3).norm_squared());
-        if node.rows > 0 {
-            by_rows!(node.rows, outwards(node, &w, &mut of_joints[k], of_bodies));
-        } else {
-            add_changes(node, &w, of_bodies);
+    pairs.clear();
+    pairs.resize(nodes.len(), [[0.0; 4]; 2]);
+    on_registers(Substitution { tree, nodes, of_bodies, of_joints, pairs })
+}
+
+/// The substitution of right-hand sides in the factors of the trees.
+struct Substitution<'a> {
+    tree: &'a Tree,
+    nodes: &'a [Node],
+    of_bodies: &'a mut [Vector6<f64>],
+    of_joints: &'a mut [Vector6<f64>],
+    /// The sums that bodies on ball joints add to their parents, then `w` and `q`, then the unknowns.
+    pairs: &'a mut [Pair],
+}
+
+#[hot]
+fn pair<R: Register>(zero: R, of: &Pair) -> [R; 2] {
+    [zero.of(of[0]), zero.of(of[1])]
+}
+
+#[hot]
+fn stored_pair<R: Register>([turn, shift]: [R; 2]) -> Pair {
+    [turn.entries(), shift.entries()]
+}
+
+#[hot]
+fn sum<R: Register>(a: [R; 2], b: [R; 2]) -> [R; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+impl OnRegisters for Substitution<'_> {
+    type Output = Vector2<f64>;
+
+    #[hot]
+    fn run<R: Register>(self, zero: R) -> Vector2<f64> {
+        let Self { tree, nodes, of_bodies, of_joints, pairs } = self;
+        let mut size = Vector2::zeros();
+        for &k in tree.order.iter().rev() {
+            let right = sum([turn_of(zero, &of_bodies[k]), shift_of(zero, &of_bodies[k])], pair(zero, &pairs[k]));
+            let Some(ball) = &nodes[k].ball else {
+                write(&mut of_bodies[k], right);
+                size += reduce(&nodes[k], k, of_bodies, of_joints);
+                continue;
+            };
+            let (own, added, opposed) = ball.inwards(zero, right, &mut of_joints[k]);
+            pairs[k] = stored_pair(own);
+            size += opposed;
+            if let Some(parent) = tree.members[k].parent {
+                pairs[parent] = stored_pair(sum(pair(zero, &pairs[parent]), added));
+            }
         }
+        for &k in &tree.order {
+            let Some(ball) = &nodes[k].ball else {
+                complete(&nodes[k], k, of_bodies, of_joints);
+                pairs[k] = stored_pair([turn_of(zero, &of_bodies[k]), shift_of(zero, &of_bodies[k])]);
+                continue;
+            };
+            let mut parent = None;
+            if let Some(of) = tree.members[k].parent {
+                parent = Some(pair(zero, &pairs[of]));
+            }
+            let unknowns = ball.outwards(zero, pair(zero, &pairs[k]), parent, &mut of_joints[k]);
+            pairs[k] = stored_pair(unknowns);
+            write(&mut of_bodies[k], unknowns);
+        }
+        size
     }
-    for &k in &tree.order {
-        let node = &nodes[k];
-        let mut unknowns = -of_bodies[k];
-        for block in node.blocks.iter().filter(|block| block.neighbour.is_coupled) {
-            unknowns -= block.z * of_bodies[block.neighbour.body];
-        }
-        if node.rows > 0 {
-            by_rows!(node.rows, inwards(node, of_bodies, &mut of_joints[k], &mut unknowns));
-        }
-        of_bodies[k] = unknowns;
+}
+
+/// Replaces the right-hand sides of a body and its joint by `w` and `s`; returns the squares of the turn and the shift of `w`.
+fn reduce(node: &Node, k: usize, of_bodies: &mut [Vector6<f64>], of_joints: &mut [Vector6<f64>]) -> Vector2<f64> {
+    let w = Vector6::solve_apart(&node.matrix, Pattern::WHOLE, &of_bodies[k]);
+    of_bodies[k] = w;
+    if node.rows > 0 {
+        by_rows!(node.rows, outwards(node, &w, &mut of_joints[k], of_bodies));
+    } else {
+        add_changes(node, &w, of_bodies);
     }
-    size
+    Vector2::new(w.fixed_rows::<3>(0).norm_squared(), w.fixed_rows::<3>(3).norm_squared())
+}
+
+/// Replaces `w` and `s` by the unknowns of a body and of its joint, by those of its neighbours.
+fn complete(node: &Node, k: usize, of_bodies: &mut [Vector6<f64>], of_joints: &mut [Vector6<f64>]) {
+    let mut unknowns = -of_bodies[k];
+    for block in node.blocks.iter().filter(|block| block.neighbour.is_coupled) {
+        unknowns -= block.z * of_bodies[block.neighbour.body];
+    }
+    if node.rows > 0 {
+        by_rows!(node.rows, inwards(node, of_bodies, &mut of_joints[k], &mut unknowns));
+    }
+    of_bodies[k] = unknowns;
 }
 
 /// Adds the part of a body with `y = −change` to the right-hand sides of its neighbours.
@@ -273,7 +388,7 @@ fn outwards<const K: usize>(
     of_joint: &mut Vector6<f64>,
     of_bodies: &mut [Vector6<f64>],
 ) {
-    let [own, of_parent] = &node.ends;
+    let [own, of_parent] = &*node.ends;
     let right = of_joint.fixed_rows::<K>(0) - own.after.fixed_columns::<K>(0).tr_mul(w);
     let s = node.inverse.fixed_view::<K, K>(0, 0) * right;
     of_joint.fixed_rows_mut::<K>(0).copy_from(&s);
@@ -299,39 +414,4 @@ fn inwards<const K: usize>(
     }
     of_joint.fixed_rows_mut::<K>(0).copy_from(&p);
     *unknowns -= node.x.fixed_columns::<K>(0) * p;
-}
-
-/// The inverse by elimination in the order of the rows, the least pivot relative to `sizes`, and the determinant
-/// relative to their absolute values; a size of zero makes both zero. Rows after the first `rows` hold no functions.
-#[hot]
-fn inverted<const K: usize>(
-    matrix: &SMatrix<f64, K, K>,
-    sizes: &nalgebra::SVector<f64, K>,
-    rows: usize,
-) -> (SMatrix<f64, K, K>, f64, f64) {
-    let (mut a, mut least, mut determinant) = (*matrix, f64::INFINITY, 1.0);
-    for k in 0..rows.min(K) {
-        let pivot = a[(k, k)];
-        // After a pivot that isn't positive, later pivots carry no information.
-        let relative = if sizes[k] == 0.0 { 0.0 } else { pivot / sizes[k] };
-        least = if least > 0.0 && (relative < least || relative.is_nan()) { relative } else { least };
-        determinant *= relative * sizes[k].signum();
-        let inverse = 1.0 / pivot;
-        a[(k, k)] = 1.0;
-        for j in 0..K {
-            a[(k, j)] *= inverse;
-        }
-        for i in 0..K {
-            if i == k {
-                continue;
-            }
-            let factor = a[(i, k)];
-            a[(i, k)] = 0.0;
-            for j in 0..K {
-                let change = factor * a[(k, j)];
-                a[(i, j)] -= change;
-            }
-        }
-    }
-    (a, least, determinant)
 }

@@ -6,12 +6,15 @@ use nalgebra::{Matrix3, Matrix6, Vector2, Vector6};
 
 roots!();
 
+use super::ball::Ball;
 use super::constraint::Place;
 use super::couplings::Coefficients;
 use super::elimination::{factorise, solve};
-use super::graph::{Joint, Member, Tree};
-use super::nodes::{Ends, Loop, Node, Unknowns, set_blocks};
+use super::ends::Ends;
+use super::graph::{Joint, Member, Neighbour, Tree};
+use super::nodes::{Loop, Node, Unknowns, set_blocks};
 use super::{parts, place_of};
+use crate::numbers::{OnRegisters, Register, on_registers};
 
 /// The least pivot of a joint that closes a loop and isn't redundant, relative to that between free bodies. The
 /// rounding error of a zero is some `1e-14`. Near a singular configuration a pivot is quadratic in the distance to it,
@@ -56,9 +59,79 @@ impl Side {
     }
 }
 
+/// The slopes of ball joints at these places: `S`, or `T` for unknowns that turn the bodies by these maps.
+struct BallSlopes<'a> {
+    tree: &'a Tree,
+    nodes: &'a mut [Node],
+    places: &'a [Place],
+    turns: Option<&'a [Matrix3<f64>]>,
+}
+
+impl OnRegisters for BallSlopes<'_> {
+    type Output = ();
+
+    #[hot]
+    fn run<R: Register>(self, zero: R) {
+        let Self { tree, nodes, places, turns } = self;
+        for (k, (node, member)) in nodes.iter_mut().zip(&tree.members).enumerate() {
+            let Some(ball) = &mut node.ball else { continue };
+            let own = &places[k].attitude;
+            match (turns, member.parent) {
+                (None, None) => ball.set_before(zero, own, None),
+                (None, Some(parent)) => ball.set_before(zero, own, Some(&places[parent].attitude)),
+                (Some(turns), None) => ball.set_after(zero, [own, &turns[k]], None),
+                (Some(turns), Some(parent)) => {
+                    ball.set_after(zero, [own, &turns[k]], Some([&places[parent].attitude, &turns[parent]]));
+                }
+            }
+        }
+    }
+}
+
+/// The matrices of bodies on ball joints.
+struct BallMatrices<'a> {
+    nodes: &'a mut [Node],
+    matrices: &'a [Matrix6<f64>],
+}
+
+impl OnRegisters for BallMatrices<'_> {
+    type Output = ();
+
+    #[hot]
+    fn run<R: Register>(self, zero: R) {
+        for (node, matrix) in self.nodes.iter_mut().zip(self.matrices) {
+            if let Some(ball) = &mut node.ball {
+                ball.set_matrix(zero, matrix);
+            }
+        }
+    }
+}
+
+/// The slopes `T = S` of ball joints.
+struct BallVelocities<'a> {
+    nodes: &'a mut [Node],
+}
+
+impl OnRegisters for BallVelocities<'_> {
+    type Output = ();
+
+    #[hot]
+    fn run<R: Register>(self, zero: R) {
+        for node in self.nodes {
+            if let Some(ball) = &mut node.ball {
+                ball.set_velocities(zero);
+            }
+        }
+    }
+}
+
 /// The functions of a joint at these places.
 pub(super) fn gap(joined: &Joint, places: &[Place]) -> Vector6<f64> {
-    joined.functions.gap(place_of(places, joined.above), &places[joined.below])
+    let (above, below) = (place_of(places, joined.above), &places[joined.below]);
+    match &joined.of_points {
+        Some(joint) => joint.gap(above, below),
+        None => joined.functions.gap(above, below),
+    }
 }
 
 /// The gap of a joint by all its functions, if some of them aren't imposed.
@@ -69,13 +142,22 @@ pub(super) fn gap_of_all(joined: &Joint, places: &[Place]) -> Option<Vector6<f64
 impl Equations {
     /// Makes room for these bodies and joints, if the last ones were others. Slopes and matrices aren't set.
     pub(super) fn fit(&mut self, joints: &[Joint], tree: &Tree) {
-        let rows = |joint: Option<usize>| joint.map_or(0, |joint| joints[joint].functions.rows());
+        let rows = |joint: Option<usize>| joint.map_or(0, |joint| joints[joint].rows);
         let all = [tree.members.len(), tree.loops.len()];
-        let node = |(member, neighbours): (&Member, &Vec<_>)| {
-            Node::new(rows(member.joint), member.parent.is_some(), neighbours)
+        let of_points = |member: &Member, neighbours: &[Neighbour]| {
+            let is_alone = !neighbours.iter().any(|neighbour| neighbour.is_coupled);
+            member.joint.and_then(|joint| joints[joint].of_points).filter(|_| is_alone)
+        };
+        let node = |(member, neighbours): (&Member, &Vec<_>)| Node {
+            ball: of_points(member, neighbours).map(|joint| Ball::new(joint, member.is_below)),
+            ..Node::new(rows(member.joint), member.parent.is_some(), neighbours)
         };
         let is_like = |(one, (member, neighbours)): (&Node, (&Member, &Vec<_>))| {
-            one.is_like(rows(member.joint), member.parent.is_some(), neighbours)
+            let is_ball = match (&one.ball, of_points(member, neighbours)) {
+                (Some(ball), Some(joint)) => ball.is_like(&joint, member.is_below),
+                (ball, joint) => ball.is_none() && joint.is_none(),
+            };
+            is_ball && one.is_like(rows(member.joint), member.parent.is_some(), neighbours)
         };
         let members = || tree.members.iter().zip(&tree.neighbours);
         let bodies = |joint: usize| [Some(joints[joint].below), joints[joint].above];
@@ -110,9 +192,12 @@ impl Equations {
     ) {
         for (k, (node, member)) in self.nodes.iter_mut().zip(&tree.members).enumerate() {
             let Some(joint) = member.joint else { continue };
+            if node.ball.is_some() {
+                continue;
+            }
             let joined = &joints[joint];
             let (own, other) = (turn(k), member.parent.map(&turn));
-            let [of_own, of_other] = &mut node.ends;
+            let [of_own, of_other] = &mut *node.ends;
             let (own, other) = ((Some(&own), side.of(of_own)), (other.as_ref(), side.of(of_other)));
             let [above, below] = if member.is_below { [other, own] } else { [own, other] };
             let at = [place_of(places, joined.above), &places[joined.below]];
@@ -129,30 +214,39 @@ impl Equations {
 
     /// Sets `E` at these places.
     pub(super) fn set_before(&mut self, joints: &[Joint], tree: &Tree, places: &[Place]) {
+        on_registers(BallSlopes { tree, nodes: &mut self.nodes, places, turns: None });
         self.set(joints, tree, places, Side::Before, |body| places[body].attitude);
     }
 
     /// Sets `C` at these places, for unknowns that turn the bodies by these maps.
     pub(super) fn set_after(&mut self, joints: &[Joint], tree: &Tree, places: &[Place], turns: &[Matrix3<f64>]) {
+        on_registers(BallSlopes { tree, nodes: &mut self.nodes, places, turns: Some(turns) });
         self.set(joints, tree, places, Side::After, |body| turns[body]);
     }
 
     /// Sets the equations of velocities at these places, with `C = E`, by the inertias of the bodies.
     pub(super) fn set_velocities(&mut self, joints: &[Joint], tree: &Tree, places: &[Place], inertias: &Coefficients) {
         self.set_before(joints, tree, places);
-        let of_trees = self.nodes.iter_mut().flat_map(|node| &mut node.ends);
-        let ends = of_trees.chain(self.loops.iter_mut().flat_map(|closing| &mut closing.ends));
-        ends.for_each(|ends| ends.after = ends.before);
+        on_registers(BallVelocities { nodes: &mut self.nodes });
+        let others = self.nodes.iter_mut().filter(|node| node.ball.is_none());
+        others.flat_map(|node| &mut *node.ends).for_each(|ends| ends.after = ends.before);
+        let of_loops = self.loops.iter_mut().flat_map(|closing| &mut closing.ends);
+        of_loops.for_each(|ends| ends.after = ends.before);
         self.factorise(tree, inertias);
     }
 
     /// Factorises these matrices of the bodies and their blocks.
     pub(super) fn factorise(&mut self, tree: &Tree, coefficients: &Coefficients) {
+        let has_loops = !self.loops.is_empty();
+        on_registers(BallMatrices { nodes: &mut self.nodes, matrices: &coefficients.matrices });
         for (node, matrix) in self.nodes.iter_mut().zip(&coefficients.matrices) {
-            node.matrix = *matrix;
+            // Loops compare their pivots with those between free bodies.
+            if node.ball.is_none() || has_loops {
+                node.matrix = *matrix;
+            }
         }
         set_blocks(tree, &mut self.nodes, &coefficients.blocks);
-        factorise(tree, &mut self.nodes, &mut self.loops);
+        factorise(tree, &mut self.nodes, &mut self.loops, &mut self.unknowns.pairs);
     }
 
     /// Solves for these residuals of the bodies and gaps of the joints; returns the result of [`solve`].
@@ -179,10 +273,14 @@ impl Equations {
             if member.joint.is_none() {
                 continue;
             }
-            let [own, of_parent] = &node.ends;
-            reactions[k] += own.momentum(&self.unknowns.joints[k]);
+            let multipliers = &self.unknowns.joints[k];
+            let [own, of_parent] = match &node.ball {
+                Some(ball) => ball.reactions(multipliers),
+                None => node.ends.each_ref().map(|ends| ends.momentum(multipliers)),
+            };
+            reactions[k] += own;
             if let Some(parent) = member.parent {
-                reactions[parent] += of_parent.momentum(&self.unknowns.joints[k]);
+                reactions[parent] += of_parent;
             }
         }
         for (closing, multiplier) in self.loops.iter().zip(&self.unknowns.loops) {
@@ -260,7 +358,7 @@ impl Equations {
         };
         for (k, (node, member)) in self.nodes.iter().zip(&tree.members).enumerate() {
             if let Some(joint) = member.joint {
-                compare(joint, [Some(k), member.parent], &node.ends);
+                compare(joint, [Some(k), member.parent], &node.ends());
             }
         }
         for (closing, &joint) in self.loops.iter().zip(&tree.loops) {
@@ -272,7 +370,10 @@ impl Equations {
     /// The largest distance of a body from the origin, or of a joint's points from their body, m. The rounding errors
     /// of positions are relative to this length.
     pub(super) fn extent(&self, places: &[Place]) -> f64 {
-        let of_bodies = self.nodes.iter().flat_map(|node| node.ends.iter().map(|ends| ends.squared_arm(node.rows)));
+        let of_bodies = self.nodes.iter().map(|node| match &node.ball {
+            Some(ball) => ball.squared_arm(),
+            None => node.ends.iter().map(|ends| ends.squared_arm(node.rows)).fold(0.0, f64::max),
+        });
         let of_loops = self.loops.iter().flat_map(|closing| &closing.ends).map(|ends| ends.squared_arm(6));
         let arms = of_bodies.chain(of_loops);
         places.iter().map(|place| place.position.norm_squared()).chain(arms).fold(0.0, f64::max).sqrt()

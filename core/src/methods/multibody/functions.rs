@@ -2,10 +2,13 @@
 
 use alloc::sync::Arc;
 use alloc::vec::Vec;
+use core::any::Any;
 
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 use super::constraint::{Constraint, Place};
+use super::joint::Joint;
+use super::point_joint::PointJoint;
 use crate::error::SetupError;
 
 /// The functions of a joint. Vectors have zeros after them, and matrices unused columns.
@@ -18,6 +21,11 @@ pub(super) trait Functions: Send + Sync {
     fn rows(&self) -> usize;
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64>;
+
+    /// The joint as one that holds points, if it is one.
+    fn of_points(&self) -> Option<PointJoint> {
+        None
+    }
 
     /// The gap by all functions of a joint some of which aren't imposed, as the other joints imply them; `None` if all are.
     fn gap_of_all(&self, above: &Place, below: &Place) -> Option<Vector6<f64>> {
@@ -46,6 +54,10 @@ impl<C: Constraint<K>, const K: usize> Functions for ConstraintFunctions<C, K> {
 
     fn rows(&self) -> usize {
         self.0.functions().min(K)
+    }
+
+    fn of_points(&self) -> Option<PointJoint> {
+        (&self.0 as &dyn Any).downcast_ref::<Joint>().and_then(Joint::of_points)
     }
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64> {

@@ -6,6 +6,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::functions::Functions;
+use super::point_joint::PointJoint;
 use crate::error::SetupError;
 
 /// A joint between two bodies, or between space and a body.
@@ -15,6 +16,16 @@ pub(super) struct Joint {
     /// The body above; `None` is space.
     pub(super) above: Option<usize>,
     pub(super) below: usize,
+    /// The joint as one that holds points, if it is one.
+    pub(super) of_points: Option<PointJoint>,
+    /// The number of functions.
+    pub(super) rows: usize,
+}
+
+impl Joint {
+    pub(super) fn new(functions: Arc<dyn Functions>, above: Option<usize>, below: usize) -> Self {
+        Self { of_points: functions.of_points(), rows: functions.rows(), functions, above, below }
+    }
 }
 
 /// A body's connection to its parent.

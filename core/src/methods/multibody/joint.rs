@@ -3,6 +3,7 @@
 use nalgebra::{Matrix3, SMatrix, Vector3, Vector6};
 
 use super::constraint::{Constraint, Place, Slope};
+use super::point_joint::PointJoint;
 use crate::error::SetupError;
 
 /// A joint between a body above, or space, and a body below. Points `ρ_a`, `ρ_b`, from the origin of each body's axes in these
@@ -195,6 +196,17 @@ impl Joint {
         let is_right = length > 0.0 && length.is_finite() && (1.0 / length).is_finite();
         let flaw = (!is_right).then_some(("length", "isn't a finite number above zero"));
         Self { flaw: joint.flaw.or(flaw), ..joint }
+    }
+
+    /// The joint as one that holds points, if it is one.
+    pub(super) fn of_points(&self) -> Option<PointJoint> {
+        let (first, others) = self.functions[..self.count].split_at_checked(3)?;
+        let mut cosines = [[Vector3::zeros(); 2]; 3];
+        for (cosine, function) in cosines.iter_mut().zip(others) {
+            let Cosine(e, n) = function else { return None };
+            *cosine = [*e, *n];
+        }
+        (*first == COINCIDENCE).then_some(PointJoint { points: self.points, cosines, count: others.len() })
     }
 
     /// The joint, with what is wrong with a relative attitude.

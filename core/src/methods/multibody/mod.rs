@@ -19,10 +19,12 @@
 //! The unknowns of Newton's iteration are half the coordinates `y` of `F` and the multipliers. The residual is affine
 //! in the multipliers, so they need no initial guess from the last step.
 
+mod ball;
 mod composed;
 mod constraint;
 mod couplings;
 mod elimination;
+mod ends;
 mod equations;
 mod functions;
 mod graph;
@@ -30,9 +32,11 @@ mod joint;
 mod newton;
 mod nodes;
 mod part;
+mod point_joint;
 mod point_mass;
 mod propagator;
 mod redundancy;
+mod square;
 mod start;
 mod state;
 mod step;
@@ -42,6 +46,7 @@ mod system;
 mod terms;
 #[cfg(test)]
 mod tests;
+mod turning;
 mod workspace;
 
 pub use constraint::{Constraint, Place, Slope};

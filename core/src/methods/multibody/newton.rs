@@ -2,18 +2,20 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use nalgebra::{Vector2, Vector6};
+use nalgebra::{Matrix3, Vector2, Vector6};
 
 roots!();
 
 use super::constraint::Place;
 use super::equations::gap;
 use super::parts;
+use super::square::{shift_of, stored, three, turn_of};
 use super::stepper::MultibodyStepper;
 use super::workspace::Workspace;
 use crate::error::StepError;
-use crate::groups::{CayleyRetraction, LieGroup as _, Retraction, SO3};
-use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, SETTLED, has_sufficed, may_suffice};
+use crate::groups::{CayleyRetraction, Retraction, SO3};
+use crate::numbers::{Columns, OnRegisters, Register, on_registers, vector};
+use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS};
 
 /// The relative rounding error of an update, by places and by opposed forces.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
@@ -25,6 +27,10 @@ const ROUNDED: f64 = 4.0 * f64::EPSILON;
 /// `C` times the square of the one before. At this length one that isn't rounding is a quarter of it only for `C`
 /// above two millions, where chains in a close pass have some thousand.
 const ROUNDING: (f64, f64) = (1e-14, 1.0 / 16.0);
+
+/// The longest update of Newton's iteration, relative to the unknowns and as a square, after which its Jacobian is used again: two
+/// further updates by it are shorter by some hundred-thousandths each.
+const NEAR: f64 = 1e-9;
 
 /// The longest distance of a solution from the guess, relative to the unknowns, at which it continues the motion whatever
 /// the sign of the determinant; as a square.
@@ -38,6 +44,35 @@ const CONTINUED: f64 = 1e-6;
 fn squares(of: &Vector6<f64>) -> Vector2<f64> {
     let (turn, shift) = parts(of);
     Vector2::new(turn.norm_squared(), shift.norm_squared())
+}
+
+/// The places after increments, to the bit, and the turns in the axes of space by the unknowns, `½ R T` with the tangent
+/// `T = 2 (I + ŷ)/(1 + |y|²)` of the Cayley map.
+struct Increments<'a> {
+    places: &'a [Place],
+    half: &'a [Vector6<f64>],
+    next: &'a mut [Place],
+    turns: &'a mut [Matrix3<f64>],
+}
+
+impl OnRegisters for Increments<'_> {
+    type Output = ();
+
+    #[hot]
+    fn run<R: Register>(self, zero: R) {
+        let Self { places, half, next, turns } = self;
+        for (((place, half), next), turn) in places.iter().zip(half).zip(next).zip(turns) {
+            let y = vector(turn_of(zero, half));
+            let increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&y);
+            let attitude = stored(zero, &place.attitude);
+            next.attitude.data.0 = three(attitude + attitude * stored(zero, &increment));
+            let [a, b, c] = attitude.0;
+            let (u, v, w) = (zero.of([y.x; 4]), zero.of([y.y; 4]), zero.of([y.z; 4]));
+            let turned = Columns([a + b * w - c * v, b + c * u - a * w, c + a * v - b * u]);
+            turn.data.0 = three(turned.scaled(zero.of([1.0 / (1.0 + y.norm_squared()); 4])));
+            next.position = place.position + vector(shift_of(zero, half)) * 2.0;
+        }
+    }
 }
 
 /// The momentum equations of a step from the workspace's `now` with its `a`, and the constraints at its end.
@@ -70,15 +105,10 @@ impl<'a> Problem<'a> {
         Self { stepper, work, weight: 1.0 / (length * length), extent: 1.0 + extent * extent, met: None }
     }
 
-    /// Computes the places after these increments, to the bit.
-    pub(super) fn set_next(&mut self) {
-        let Workspace { now, places, half, next_places, .. } = &mut *self.work;
-        for (k, next) in next_places.iter_mut().enumerate() {
-            let (turn, shift) = parts(&half[k]);
-            let increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&turn);
-            let attitude = *now[k].0.advance(&increment).as_matrix();
-            *next = Place { attitude, position: places[k].position + shift * 2.0 };
-        }
+    /// Sets the places after these increments, and the turns by the unknowns.
+    fn set_next(&mut self) {
+        let Workspace { places, half, next_places: next, turns, .. } = &mut *self.work;
+        on_registers(Increments { places, half, next, turns });
     }
 
     /// One Newton iteration.
@@ -88,10 +118,6 @@ impl<'a> Problem<'a> {
         self.set_next();
         let (stepper, work) = (self.stepper, &mut *self.work);
         // Gaps are halved: the unknowns are half the coordinates, so a shift is twice its unknown.
-        for (k, turn) in work.turns.iter_mut().enumerate() {
-            let tangent = <CayleyRetraction as Retraction<SO3>>::tangent_of_half(&parts(&work.half[k]).0);
-            *turn = work.places[k].attitude * tangent * 0.5;
-        }
         work.equations.set_after(stepper.joints(), &stepper.tree, &work.next_places, &work.turns);
         work.equations.factorise(&stepper.tree, &work.coefficients);
         self.met = work.equations.redundant(&stepper.tree);
@@ -133,8 +159,8 @@ impl<'a> Problem<'a> {
 
     /// The number of iterations, and whether they converged near the identity with all determinants positive.
     fn attempt(&mut self, most: u32, longest: f64) -> (u32, bool) {
-        // The length of the last update, if it wasn't shortened.
-        let (mut made, mut before) = (0, f64::INFINITY);
+        // The length of the last update, if it wasn't shortened, and if it was one of Newton's iteration.
+        let (mut made, mut before, mut told) = (0, f64::INFINITY, None);
         for _ in 0..most {
             made += 1;
             let Update { length: update, size, largest, rounded } = self.newton(longest);
@@ -142,17 +168,24 @@ impl<'a> Problem<'a> {
                 return (made, false);
             }
             let is_rounding = before.max(update) <= size * ROUNDING.0 && update >= before * ROUNDING.1;
-            if update <= (size * (f64::EPSILON * SETTLED)).max(rounded) || is_rounding {
+            let curvature = Curvature::told(told, update);
+            if curvature.has_settled(update, size) || update <= rounded || is_rounding {
                 return (made, self.is_wanted());
             }
             let is_whole = largest <= longest * longest;
             before = if is_whole { update } else { f64::INFINITY };
-            if is_whole && may_suffice(update, size) {
-                let second = self.simplified();
+            told = is_whole.then_some(update);
+            // An update by the last Jacobian takes half the time of one by its own, and shortens the next by a constant factor.
+            let (mut last, mut is_near) = (update, is_whole && update <= size * NEAR);
+            while is_near && made < most {
+                let Update { length, size, rounded, .. } = self.simplified();
                 made += 1;
-                if second.length <= second.rounded || has_sufficed(update, second.length, second.size) {
+                if length <= rounded || curvature.has_sufficed(last, length, size) {
                     return (made, self.is_wanted());
                 }
+                let factor = length / last;
+                is_near = curvature.has_sufficed(length, length * factor, size);
+                (last, told) = (length, None);
             }
         }
         (made, false)

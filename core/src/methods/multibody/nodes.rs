@@ -1,5 +1,6 @@
 //! The equations of bodies and of joints, before and after elimination.
 
+use alloc::boxed::Box;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -7,51 +8,9 @@ use nalgebra::{Matrix6, Vector6};
 
 roots!();
 
+use super::ball::Ball;
+use super::ends::Ends;
 use super::graph::{Neighbour, Tree};
-
-/// The two derivative maps at one end of a joint, a column for each of its functions.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Ends {
-    /// The matrix `Eᵀ` from multipliers to the body's momentum, torque in its axes first.
-    pub(super) before: Matrix6<f64>,
-    /// The matrix `Cᵀ`, the transpose of the map from the body's unknowns to the functions.
-    pub(super) after: Matrix6<f64>,
-}
-
-impl Ends {
-    pub(super) const ZERO: Self = Self {
-        before: Matrix6::from_array_storage(nalgebra::ArrayStorage([[0.0; 6]; 6])),
-        after: Matrix6::from_array_storage(nalgebra::ArrayStorage([[0.0; 6]; 6])),
-    };
-
-    /// The squared rates of a function per unit of the body's turn, and of its shift.
-    fn rates(&self, row: usize) -> [f64; 2] {
-        [0, 3].map(|first| self.before.fixed_view::<3, 1>(first, row).norm_squared())
-    }
-
-    /// The square of the longest lever arm of the first `rows` functions, m²; zero if they compare only directions.
-    pub(super) fn squared_arm(&self, rows: usize) -> f64 {
-        (0..rows).fold(0.0, |longest: f64, row| {
-            let [turns, shifts] = self.rates(row);
-            if shifts > 0.0 { longest.max(turns / shifts) } else { longest }
-        })
-    }
-
-    /// The size of each function's terms for a `turn` in rad or rad/s and a `shift` in m or m/s; the shift counts at
-    /// least as the lever arm times the turn.
-    pub(super) fn sizes(&self, turn: f64, shift: f64) -> Vector6<f64> {
-        let shift = shift.max(self.squared_arm(6).sqrt() * turn);
-        Vector6::from_fn(|row, _| {
-            let [turns, shifts] = self.rates(row).map(f64::sqrt);
-            turns * turn + shifts * shift
-        })
-    }
-
-    /// The momentum `Eᵀ p` of these multipliers.
-    pub(super) fn momentum(&self, multipliers: &Vector6<f64>) -> Vector6<f64> {
-        self.before * multipliers
-    }
-}
 
 /// The blocks of a body and one that is eliminated after it.
 #[derive(Clone, Copy)]
@@ -81,27 +40,35 @@ pub(super) struct Node {
     /// The determinant relative to the product of the diagonal, once all descendants are eliminated.
     pub(super) determinant: f64,
     /// The maps `E` and `C` of the joint towards the root, for this body and for its parent.
-    pub(super) ends: [Ends; 2],
+    pub(super) ends: Box<[Ends; 2]>,
     /// The number of functions of that joint.
     pub(super) rows: usize,
     /// Whether that joint is at another body, the first of the blocks.
     pub(super) has_parent: bool,
     pub(super) blocks: Vec<Block>,
+    /// That joint if it is a ball joint, and no term couples the body with another; its maps aren't in `ends`.
+    pub(super) ball: Option<Ball>,
     /// The least pivot of that joint, relative to the diagonal; one if there is no joint.
     pub(super) pivot: f64,
     /// The determinant of that joint's matrix `S`, relative to the absolute values of its diagonal; one if there is no
     /// joint.
     pub(super) of_joint: f64,
-    pub(super) x: Matrix6<f64>,
-    pub(super) inverse: Matrix6<f64>,
+    pub(super) x: Box<Matrix6<f64>>,
+    pub(super) inverse: Box<Matrix6<f64>>,
 }
 
 impl Node {
     pub(super) fn new(rows: usize, has_parent: bool, neighbours: &[Neighbour]) -> Self {
         let zero = Matrix6::zeros();
-        let (ends, x, inverse, matrix) = ([Ends::ZERO; 2], zero, zero, zero);
+        let (ends, x, inverse, matrix) = (Box::new([Ends::ZERO; 2]), Box::new(zero), Box::new(zero), zero);
         let blocks = neighbours.iter().map(|&neighbour| Block::of(neighbour)).collect();
-        Self { matrix, determinant: 1.0, ends, rows, has_parent, blocks, pivot: 1.0, of_joint: 1.0, x, inverse }
+        let ball = None;
+        Self { matrix, determinant: 1.0, ends, rows, has_parent, blocks, ball, pivot: 1.0, of_joint: 1.0, x, inverse }
+    }
+
+    /// The maps `E` and `C` of the joint towards the root.
+    pub(super) fn ends(&self) -> [Ends; 2] {
+        self.ball.as_ref().map_or(*self.ends, Ball::ends)
     }
 
     /// Whether these are the equations of a body with such a joint and such neighbours: what isn't overwritten is the
@@ -175,12 +142,20 @@ pub(super) struct Unknowns {
     /// The multipliers of each body's joint towards the root.
     pub(super) joints: Vec<Vector6<f64>>,
     pub(super) loops: Vec<Vector6<f64>>,
+    /// The turns and shifts of bodies on ball joints during the solution.
+    pub(super) pairs: Vec<Pair>,
 }
+
+/// A turn and a shift as registers load them.
+pub(super) type Pair = [[f64; 4]; 2];
 
 /// Adds a block to the equations of a body, in the columns of a body.
 pub(super) fn add(nodes: &mut [Node], [row, column]: [usize; 2], matrix: &Matrix6<f64>) {
     if row == column {
-        nodes[row].matrix += matrix;
+        match &mut nodes[row].ball {
+            Some(ball) => ball.add_matrix(matrix),
+            None => nodes[row].matrix += matrix,
+        }
     } else if let Some(block) = nodes[row].blocks.iter_mut().find(|block| block.neighbour.body == column) {
         block.own += matrix;
     } else if let Some(block) = nodes[column].blocks.iter_mut().find(|block| block.neighbour.body == row) {

@@ -11,8 +11,8 @@ use alloc::sync::Arc;
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
 use super::constraint::Place;
+use super::ends::Ends;
 use super::graph::Joint;
-use super::nodes::Ends;
 use super::system::Multibody;
 use super::terms::{AtRest, Blocks, BodyTerm, PairTerm, space};
 use super::{Body, Increment, parts, place};

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use super::equations::gap_of_all;
 use super::functions::Part;
+use super::graph::Joint;
 use super::stepper::MultibodyStepper;
 use super::system::Multibody;
 use super::{Body, place};
@@ -79,7 +80,8 @@ impl Multibody {
         while let Some((joint, rows)) = self.clone().stepper(1.0)?.independent(attitudes)? {
             let joined = &mut self.joints[joint];
             all.push(Redundancy { joint, functions: joined.functions.rows() - rows.len() });
-            joined.functions = Arc::new(Part { all: Arc::clone(&joined.functions), rows });
+            let all = Arc::clone(&joined.functions);
+            *joined = Joint::new(Arc::new(Part { all, rows }), joined.above, joined.below);
         }
         Ok((self, all))
     }

@@ -103,30 +103,23 @@ impl Offsets {
     /// increment is `far` from the identity, it is the guess itself. The estimate before the first step isn't used.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // a few
     pub(super) fn follow(self, state: &mut [f64], halves: &[Vector6<f64>], is_far: bool) {
-        let (is_first, all) = (self.steps(state) == 0.0, 6 * self.bodies);
+        let (is_guessed, all) = (!is_far && self.steps(state) != 0.0, 6 * self.bodies);
         let memory = &mut state[self.memory_of(0)];
         let known = memory.last().map_or(0, |known| (*known as usize).min(DIFFERENCES + 1));
-        let (lasts, rest) = memory.split_at_mut(all);
-        let (guesses, differences) = rest.split_at_mut(all);
-        let entries = || halves.iter().flat_map(|half| half.iter());
-        for ((last, guess), &half) in lasts.iter_mut().zip(&mut *guesses).zip(entries()) {
-            // The first difference, until the others are known.
-            *last = half - *last;
-            *guess = half;
-        }
-        let is_guessed = !(is_far || is_first);
-        for number in differences.chunks_exact_mut(all).take(known.min(DIFFERENCES)) {
-            for ((difference, guess), before) in lasts.iter_mut().zip(&mut *guesses).zip(number) {
+        for (body, half) in halves.iter().enumerate() {
+            let (first, last) = (6 * body, Vector6::from_column_slice(&memory[6 * body..][..6]));
+            let (mut guess, mut difference) = (*half, half - last);
+            for number in memory[2 * all..].chunks_exact_mut(all).take(known.min(DIFFERENCES)) {
+                let number = &mut number[first..][..6];
+                let before = Vector6::from_column_slice(number);
+                number.copy_from_slice(difference.as_slice());
                 if is_guessed {
-                    *guess += *difference;
+                    guess += difference;
                 }
-                let now = *difference;
-                *difference -= *before;
-                *before = now;
+                difference -= before;
             }
-        }
-        for (last, &half) in lasts.iter_mut().zip(entries()) {
-            *last = half;
+            memory[first..][..6].copy_from_slice(half.as_slice());
+            memory[all + first..][..6].copy_from_slice(guess.as_slice());
         }
         if let Some(last) = memory.last_mut() {
             *last = (known + 1).min(DIFFERENCES + 1) as f64;

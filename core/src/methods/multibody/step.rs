@@ -37,8 +37,10 @@ impl MultibodyStepper {
         if let Some(stages) = &self.stages {
             return self.composed_step(stages, state, work, forces);
         }
-        work.fit(self.bodies(), self.tree.couplings.len());
-        work.equations.fit(self.joints(), &self.tree);
+        if !are_slopes_known {
+            work.fit(self.bodies(), self.tree.couplings.len());
+            work.equations.fit(self.joints(), &self.tree);
+        }
         let is_due = steps % STEPS_BETWEEN_CHECKS == 0.0;
         self.load(state, work, is_due)?;
         self.kick_before(work);
@@ -47,7 +49,6 @@ impl MultibodyStepper {
         }
         let mut problem = Problem::new(self, work);
         let iterations = problem.solve()?;
-        problem.set_next();
         let impulse = -2.0 / self.h;
         let mut forces = forces;
         if let Some(forces) = &mut forces {

@@ -29,8 +29,8 @@ impl MultibodyStepper {
         coefficients: &mut Coefficients,
     ) {
         for body in 0..self.bodies() {
-            let (residual, matrix) = self.newton_system(body, &now[body], &a[body], &half[body]);
-            (coefficients.vectors[body], coefficients.matrices[body]) = (residual, matrix);
+            let to = (&mut coefficients.vectors[body], &mut coefficients.matrices[body]);
+            self.write_newton(body, &now[body], [&a[body], &half[body]], to);
         }
         coefficients.blocks.fill([Matrix6::zeros(); 2]);
         let (space, still) = (space(), Vector6::zeros());
@@ -66,25 +66,29 @@ impl MultibodyStepper {
         }
     }
 
-    /// Residual and Jacobian of a body's momentum equation by its own terms.
-    fn newton_system(
+    /// Writes residual and Jacobian of a body's momentum equation by its own terms.
+    fn write_newton(
         &self,
         body: usize,
         now: &Body,
-        a: &Vector6<f64>,
-        half: &Vector6<f64>,
-    ) -> (Vector6<f64>, Matrix6<f64>) {
+        [a, half]: [&Vector6<f64>; 2],
+        (residual, matrix): (&mut Vector6<f64>, &mut Matrix6<f64>),
+    ) {
         let mut terms = self.terms(body).filter(|term| term.has_unknown());
-        let Some(first) = terms.next() else { return (Vector6::zeros(), Matrix6::zeros()) };
-        let (mut sum, mut left) = (first.newton_system(now, a, half), None);
-        let mut before = first;
+        let Some(first) = terms.next() else {
+            (*residual, *matrix) = (Vector6::zeros(), Matrix6::zeros());
+            return;
+        };
+        first.write_newton(now, a, half, (&mut *residual, &mut *matrix));
+        let (mut before, mut left) = (first, None);
         for term in terms {
             let a = before.remainder(left.as_ref().unwrap_or(a));
-            let (residual, matrix) = term.newton_system(now, &a, half);
-            sum = (sum.0 + residual, sum.1 + matrix);
+            let (mut of_term, mut part) = (Vector6::zeros(), Matrix6::zeros());
+            term.write_newton(now, &a, half, (&mut of_term, &mut part));
+            *residual += of_term;
+            *matrix += part;
             (before, left) = (term, Some(a));
         }
-        sum
     }
 
     /// The residual of a body's momentum equation by its own terms.
@@ -100,7 +104,12 @@ impl MultibodyStepper {
     /// The trace of the Jacobian at rest.
     pub(super) fn trace(&self) -> f64 {
         let zero = Vector6::zeros();
-        (0..self.bodies()).map(|body| self.newton_system(body, &space(), &zero, &zero).1.trace()).sum()
+        let of_body = |body: usize| {
+            let (mut residual, mut matrix) = (zero, Matrix6::zeros());
+            self.write_newton(body, &space(), [&zero; 2], (&mut residual, &mut matrix));
+            matrix.trace()
+        };
+        (0..self.bodies()).map(of_body).sum()
     }
 
     /// The Lagrangian, the momentum and the inertia of the limit at rest by a body's own terms.
@@ -116,7 +125,15 @@ impl MultibodyStepper {
     /// Sets momenta and inertias of the limit at rest.
     pub(super) fn set_limit(&self, now: &[Body], coefficients: &mut Coefficients) {
         for (body, now) in now.iter().enumerate() {
-            (_, coefficients.vectors[body], coefficients.matrices[body]) = self.at_rest(body, now);
+            let mut terms = self.terms(body);
+            let Some(first) = terms.next() else { continue };
+            let (vector, matrix) = (&mut coefficients.vectors[body], &mut coefficients.matrices[body]);
+            (_, *vector, *matrix) = first.at_rest(now);
+            for term in terms {
+                let (_, momentum, inertia) = term.at_rest(now);
+                *vector += momentum;
+                *matrix += inertia;
+            }
         }
         coefficients.blocks.fill([Matrix6::zeros(); 2]);
         let space = space();
@@ -174,7 +191,7 @@ impl MultibodyStepper {
         let nodes = self.inertias(&coefficients);
         let right = coefficients.vectors.iter().zip(momenta).map(|(bias, momentum)| bias - momentum);
         let joints = alloc::vec![Vector6::zeros(); self.bodies()];
-        let mut unknowns = Unknowns { bodies: right.collect(), joints, loops: Vec::new() };
+        let mut unknowns = Unknowns { bodies: right.collect(), joints, ..Unknowns::default() };
         solve(&self.free, &nodes, &[], &mut unknowns);
         unknowns.bodies
     }
@@ -187,7 +204,7 @@ impl MultibodyStepper {
         };
         let mut nodes: Vec<_> = limit.matrices.iter().zip(&self.free.neighbours).map(of_body).collect();
         set_blocks(&self.free, &mut nodes, &limit.blocks);
-        factorise(&self.free, &mut nodes, &mut []);
+        factorise(&self.free, &mut nodes, &mut [], &mut Vec::new());
         nodes
     }
 

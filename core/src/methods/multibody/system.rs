@@ -219,7 +219,7 @@ impl Multibody {
     /// Adds a joint between a body above, or space, `None`, and a body below. Errors count joints from zero.
     pub fn join<C: Constraint<K>, const K: usize>(&mut self, joint: C, above: Option<usize>, below: usize) {
         const { assert!(0 < K && K < 7, "a joint between two bodies has one function at least and six at most") }
-        self.joints.push(Joint { functions: Arc::new(ConstraintFunctions(joint)), above, below });
+        self.joints.push(Joint::new(Arc::new(ConstraintFunctions(joint)), above, below));
     }
 
     /// The number of bodies.

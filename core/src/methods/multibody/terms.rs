@@ -36,8 +36,14 @@ pub(super) trait BodyTerm: Send + Sync {
     /// The kick after a step with this increment to this place.
     fn kick_after(&self, increment: &Increment, next: &Body) -> Option<Vector6<f64>>;
 
-    /// Residual and Jacobian of [`Effect::newton_system`], without denominators.
-    fn newton_system(&self, now: &Body, a: &Vector6<f64>, half: &Vector6<f64>) -> (Vector6<f64>, Matrix6<f64>);
+    /// Writes residual and Jacobian of [`Effect::newton_system`], without denominators.
+    fn write_newton(
+        &self,
+        now: &Body,
+        a: &Vector6<f64>,
+        half: &Vector6<f64>,
+        to: (&mut Vector6<f64>, &mut Matrix6<f64>),
+    );
 
     /// The residual alone.
     fn newton_residual(&self, now: &Body, a: &Vector6<f64>, half: &Vector6<f64>) -> Vector6<f64>;
@@ -200,10 +206,16 @@ where
         E::FACTS.parts.kick_after.then(kick)
     }
 
-    fn newton_system(&self, now: &Body, a: &Vector6<f64>, half: &Vector6<f64>) -> (Vector6<f64>, Matrix6<f64>) {
+    fn write_newton(
+        &self,
+        now: &Body,
+        a: &Vector6<f64>,
+        half: &Vector6<f64>,
+        to: (&mut Vector6<f64>, &mut Matrix6<f64>),
+    ) {
         let (now, [a, half]) = (E::Group::of(now), [a, half].map(E::Group::of_components));
         let (residual, jacobian) = self.0.newton_system(&now, &a, &half);
-        (E::Group::in_body(&residual), E::Group::square_in_body(&jacobian))
+        (*to.0, *to.1) = (E::Group::in_body(&residual), E::Group::square_in_body(&jacobian));
     }
 
     fn newton_residual(&self, now: &Body, a: &Vector6<f64>, half: &Vector6<f64>) -> Vector6<f64> {

@@ -281,19 +281,20 @@ fn coupled(h: f64) -> MultibodyStepper {
     system.stepper(h).unwrap()
 }
 
-/// Configurations, and half increments, of four bodies.
-fn somewhere(seed: u32) -> ([Body; 4], [Vector6<f64>; 4], [Vector6<f64>; 4]) {
+/// Configurations, and half increments, of some bodies.
+fn somewhere<const N: usize>(seed: u32) -> ([Body; N], [Vector6<f64>; N], [Vector6<f64>; N]) {
     let mut random = Random::new(seed.into());
-    let bodies = [(); 4].map(|()| {
+    let bodies = [(); N].map(|()| {
         let (turn, shift): (Vector3<f64>, Vector3<f64>) = (random.sample(), random.sample());
         (SO3::exp(turn), R3::from(shift))
     });
-    (bodies, [(); 4].map(|()| random.sample::<Vector6<f64>>() * 0.3), [(); 4].map(|()| random.sample()))
+    (bodies, [(); N].map(|()| random.sample::<Vector6<f64>>() * 0.3), [(); N].map(|()| random.sample()))
 }
 
 /// The Newton matrix of the bodies as one matrix.
 fn assembled(stepper: &MultibodyStepper, coefficients: &Coefficients) -> DMatrix<f64> {
-    let mut all = DMatrix::zeros(24, 24);
+    let all = 6 * stepper.bodies();
+    let mut all = DMatrix::zeros(all, all);
     for (body, matrix) in coefficients.matrices.iter().enumerate() {
         all.view_mut((6 * body, 6 * body), (6, 6)).copy_from(matrix);
     }
@@ -311,7 +312,7 @@ fn the_newton_matrix_is_the_derivative_of_the_residual() {
     let mut coefficients = Coefficients::default();
     coefficients.fit(4, stepper.tree.couplings.len());
     for seed in 1..4 {
-        let (now, half, a) = somewhere(seed);
+        let (now, half, a) = somewhere::<4>(seed);
         stepper.set_newton(&now, &a, &half, &mut coefficients);
         let matrix = assembled(&stepper, &coefficients);
         let mut residuals = coefficients.vectors.clone();
@@ -333,10 +334,34 @@ fn the_newton_matrix_is_the_derivative_of_the_residual() {
 /// Elimination along the tree solves the equations of bodies and joints as a dense matrix does.
 #[test]
 fn elimination_along_the_tree_is_that_of_the_whole_matrix() {
-    let stepper = coupled(0.1);
-    let (now, half, a) = somewhere(5);
-    let mut coefficients = stepper.limit(&now);
-    stepper.set_newton(&now, &a, &half, &mut coefficients);
+    for stepper in [coupled(0.1), branched(0.1)] {
+        compare_with_the_whole_matrix(&stepper);
+    }
+}
+
+/// Joints that hold points in a tree that branches, two of them from the body below to that above, without terms between bodies.
+fn branched(h: f64) -> MultibodyStepper {
+    let mut system = Multibody::new();
+    for mass in [1.0, 1.3, 1.6, 1.9, 0.7, 1.2, 0.8] {
+        system.body(rod(mass, 0.4));
+    }
+    let (aside, turn) = (Vector3::new(0.3, 0.2, -0.1), SO3::exp(Vector3::new(0.3, -0.5, 0.2)));
+    system.join(ball(aside, LEFT), None, 0);
+    system.join(Joint::universal([RIGHT, aside], [aside, LEFT + aside]), Some(0), 1);
+    system.join(Joint::pin([LEFT, RIGHT + aside], [aside, LEFT + aside]), Some(2), 1);
+    system.join(ball(aside, LEFT), Some(1), 3);
+    system.join(ball(aside, LEFT), Some(4), 3);
+    system.join(Joint::weld([RIGHT, LEFT], *turn.as_matrix()), Some(3), 5);
+    system.join(Joint::slider([RIGHT, LEFT], aside, *turn.as_matrix()), Some(0), 6);
+    system.stepper(h).unwrap()
+}
+
+fn compare_with_the_whole_matrix(stepper: &MultibodyStepper) {
+    let bodies = stepper.bodies();
+    let (now, half, a) = somewhere::<7>(5);
+    let (now, half, a) = (&now[..bodies], &half[..bodies], &a[..bodies]);
+    let mut coefficients = stepper.limit(now);
+    stepper.set_newton(now, a, half, &mut coefficients);
     let places: Vec<_> = now.iter().map(super::place).collect();
     let turns: Vec<_> = half.iter().map(|half| super::place(&now[0]).attitude * (1.0 + half[0])).collect();
     let mut equations = Equations::default();
@@ -345,12 +370,21 @@ fn elimination_along_the_tree_is_that_of_the_whole_matrix() {
     equations.set_after(stepper.joints(), &stepper.tree, &places, &turns);
     equations.factorise(&stepper.tree, &coefficients);
     let number = |k: usize| f64::from(u8::try_from(k).unwrap());
-    let gaps = |joint: usize| Vector6::from_fn(|row, _| if row < 3 { number(joint + row) * 0.1 - 0.2 } else { 0.0 });
+    let gaps = |joint: usize| {
+        let rows = stepper.joints()[joint].rows;
+        Vector6::from_fn(|row, _| if row < rows { number(joint + row) * 0.1 - 0.2 } else { 0.0 })
+    };
     equations.solve(&stepper.tree, &coefficients.vectors, gaps);
-    let mut whole = DMatrix::zeros(36, 36);
-    whole.view_mut((0, 0), (24, 24)).copy_from(&assembled(&stepper, &coefficients));
-    let mut right = DVector::zeros(36);
-    for body in 0..4 {
+    let mut first = alloc::vec![6 * bodies];
+    first.extend(stepper.joints().iter().scan(6 * bodies, |last, joined| {
+        *last += joined.rows;
+        Some(*last)
+    }));
+    let all = first[first.len() - 1];
+    let mut whole = DMatrix::zeros(all, all);
+    whole.view_mut((0, 0), (6 * bodies, 6 * bodies)).copy_from(&assembled(stepper, &coefficients));
+    let mut right = DVector::zeros(all);
+    for body in 0..bodies {
         right.rows_mut(6 * body, 6).copy_from(&-coefficients.vectors[body]);
     }
     for (joint, joined) in stepper.joints().iter().enumerate() {
@@ -362,26 +396,28 @@ fn elimination_along_the_tree_is_that_of_the_whole_matrix() {
             joined.functions.slopes(at, [above.as_ref(), below.as_ref()], [&mut of_above, &mut of_below]);
             for (body, slope) in [(joined.above, of_above), (Some(joined.below), of_below)] {
                 let Some(body) = body else { continue };
-                for (row, column) in (0..6).flat_map(|row| (0..3).map(move |column| (row, column))) {
+                for (row, column) in (0..6).flat_map(|row| (0..joined.rows).map(move |column| (row, column))) {
                     let place = if before {
-                        (6 * body + row, 24 + 3 * joint + column)
+                        (6 * body + row, first[joint] + column)
                     } else {
-                        (24 + 3 * joint + column, 6 * body + row)
+                        (first[joint] + column, 6 * body + row)
                     };
                     whole[place] = slope[(row, column)];
                 }
             }
         }
-        right.rows_mut(24 + 3 * joint, 3).copy_from(&-gaps(joint).fixed_rows::<3>(0));
+        right.rows_mut(first[joint], joined.rows).copy_from(&-gaps(joint).rows(0, joined.rows));
     }
     let expected = whole.lu().solve(&right).unwrap();
-    for body in 0..4 {
+    for body in 0..bodies {
         let off = (equations.unknowns.bodies[body] - expected.rows(6 * body, 6)).amax();
         assert!(off < 1e-11 * expected.amax(), "body {body}: {off:e}");
     }
     for (body, member) in stepper.tree.members.iter().enumerate() {
-        let of_joint = equations.unknowns.joints[body].fixed_rows::<3>(0).into_owned();
-        let off = (of_joint - expected.rows(24 + 3 * member.joint.unwrap(), 3)).amax();
+        let joint = member.joint.unwrap();
+        let rows = stepper.joints()[joint].rows;
+        let of_joint = equations.unknowns.joints[body].rows(0, rows).into_owned();
+        let off = (of_joint - expected.rows(first[joint], rows)).amax();
         assert!(off < 1e-11 * expected.amax(), "joint of body {body}: {off:e}");
     }
 }
@@ -390,7 +426,7 @@ fn elimination_along_the_tree_is_that_of_the_whole_matrix() {
 #[test]
 fn velocities_are_those_of_the_coupled_inertia() {
     let stepper = coupled(0.1);
-    let (now, velocities, _) = somewhere(6);
+    let (now, velocities, _) = somewhere::<4>(6);
     let momenta = stepper.momenta_of(&now, &velocities);
     let back = stepper.velocities_of(&now, &momenta);
     assert!(back.iter().zip(&velocities).all(|(a, b)| (a - b).amax() < 1e-13));

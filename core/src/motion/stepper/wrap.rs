@@ -12,7 +12,7 @@ use crate::motion::plan::Plan;
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// The stepper of `−h`, which undoes the steps of this one exactly.
     ///
-    /// The Lagrangian `l_d` must be [self-adjoint](DiscreteLagrangian::SELF_ADJOINT); any other is refused at compile
+    /// The Lagrangian `l_d` must be [self-adjoint](crate::mechanics::Facts::is_self_adjoint); any other is refused at compile
     /// time:
     ///
     /// ```compile_fail,E0080
@@ -41,7 +41,10 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         S: DiscreteLagrangian + Clone,
     {
         const {
-            assert!(S::SELF_ADJOINT, "a step of -h undoes one of h only where l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)");
+            assert!(
+                S::FACTS.is_self_adjoint,
+                "a step of -h undoes one of h only where l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)"
+            );
             assert!(!P::COUNTS_TIME, "counted steps go on counting: reverse the clock, and the function of the values");
         }
         let plan = self.plan.refolded(&self.scene, -self.step_size())?;

@@ -20,4 +20,4 @@ pub use declaration::{
     Scalar, named_displacements, named_velocities,
 };
 pub use spelling::Spelling;
-pub use tree::{Frames, Kind, Name, Shape, Tree, parts};
+pub use tree::{Frames, Kind, Name, OF_ANY_SIZE, Shape, Tree, parts};

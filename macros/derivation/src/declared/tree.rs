@@ -32,12 +32,16 @@ impl Shape {
     pub fn describe(self) -> String {
         match self {
             Self::Scalar => "a scalar".to_owned(),
+            OF_ANY_SIZE => "an identity, which has the size of the matrix it stands beside".to_owned(),
             Self::Matrix(rows, 1) => format!("a vector of {rows}"),
             Self::Matrix(1, columns) => format!("a row of {columns}"),
             Self::Matrix(rows, columns) => format!("a {rows} × {columns} matrix"),
         }
     }
 }
+
+/// The shape of `I` among factors with matrices of several sizes, until it stands beside one.
+pub const OF_ANY_SIZE: Shape = Shape::Matrix(0, 0);
 
 /// An expression with its shape and its mathematical meaning.
 #[derive(Clone, Debug)]

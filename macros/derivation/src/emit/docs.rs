@@ -1,6 +1,6 @@
 //! The derived equations as documentation of the generated methods, and as one text.
 
-use crate::declared::{AdvectedParameter, Declaration, Factor};
+use crate::declared::{AdvectedParameter, Declaration, Factor, Role};
 use crate::judged::{Choice, Equations, Findings, Sureness};
 use crate::mathematics::derive::{Continuous, DeclaredFunction, Derivation, Inverse, SelfAdjointness, View};
 use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text, vector_text};
@@ -199,7 +199,7 @@ pub(super) fn derivation(
     };
     let sections = [
         ("hypotheses used", hypotheses),
-        ("self-adjoint", adjoint(findings, &names(declaration))),
+        ("self-adjoint", adjoint(findings, declaration)),
         ("certainty", certified(OF_A_STEP, findings.sureness)),
         ("Newton system", candidates(&chosen.kernel)),
         ("operations", costs(&chosen.kernel)),
@@ -364,8 +364,8 @@ fn superscript(digit: char) -> Option<char> {
     digits.get(usize::try_from(digit.to_digit(10)?).ok()?).copied()
 }
 
-/// The self-adjointness of the Lagrangian, its proof, and its consequence.
-fn adjoint(findings: &Findings, w: &[String]) -> String {
+/// The self-adjointness of the Lagrangian or of the force, its proof, and its consequence.
+fn adjoint(findings: &Findings, declaration: &Declaration) -> String {
     let even = "even order; a step of −h undoes a step of h";
     let how_sure = match (findings.sureness, findings.self_adjointness) {
         (Sureness::Certified(exponent), SelfAdjointness::Exact) => wrong(exponent),
@@ -383,6 +383,9 @@ fn adjoint(findings: &Findings, w: &[String]) -> String {
         ),
         SelfAdjointness::No => ("≠", "at random points", "order 1 in general; a step of −h doesn't undo a step of h"),
     };
+    let w = names(declaration);
     let [here, there] = ["", "F⁻¹·"].map(|turned| w.iter().fold(String::new(), |all, w| all + turned + w + ", "));
-    format!("l_d(F, {here}h) {sign} −l_d(F⁻¹, {there}−h)    [{how}: {consequence}]")
+    let (function, ends) =
+        if declaration.role == Role::Force { ("δW", [", η, η⁺", ", η⁺, η"]) } else { ("l_d", [""; 2]) };
+    format!("{function}(F, {here}h{}) {sign} −{function}(F⁻¹, {there}−h{})    [{how}: {consequence}]", ends[0], ends[1])
 }

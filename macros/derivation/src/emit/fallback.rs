@@ -101,7 +101,6 @@ fn of_role(declaration: &Declaration, header: &Header) -> TokenStream {
             let continuous = header.implementation("ContinuousLagrangian");
             quote_spanned! {span=>
                 #lagrangian {
-                    const SELF_ADJOINT: #core::primitive::bool = false;
                     #(#of_increment)*
                 }
 

@@ -116,9 +116,14 @@ impl Header {
         }
     }
 
-    /// The type of `I`: a matrix of the group, or among several bodies a matrix of a rotation.
-    pub(crate) fn matrix_of_factor(&self) -> TokenStream {
-        self.matrix_of(if self.sizes.len() > 1 { 3 } else { self.size })
+    /// The value of `I`: of any size where that of the matrices isn't one.
+    pub(crate) fn identity(&self, rows: Option<usize>) -> TokenStream {
+        let (span, private) = (Span::mixed_site(), &self.private);
+        let of_size = |rows: usize| {
+            let matrix = self.matrix_of(rows);
+            quote_spanned!(span=> <#matrix>::identity())
+        };
+        rows.map_or_else(|| quote_spanned!(span=> #private::Identity), of_size)
     }
 
     fn column(&self, rows: usize) -> TokenStream {

@@ -106,10 +106,9 @@ pub(crate) fn implementation(
     let declared_text = declared_text(&header, declaration, arguments);
     let item = page::documented(item, &page::page(declaration, chosen, &texts, equations, findings));
     let describe = emitter.describe();
-    let private = &header.private;
     let span = Span::mixed_site();
     let types = header.types(kinetic(chosen), &stages.constants_type, &stages.step_terms_type);
-    let facts = stages::facts(&emitter, kernel);
+    let facts = stages::facts(&emitter, kernel, findings.self_adjointness.is_found());
     let is_force = declaration.role == Role::Force;
     let (name, mathematics) =
         if is_force { ("Force", TokenStream::new()) } else { ("DiscreteLagrangian", mathematics) };
@@ -120,17 +119,12 @@ pub(crate) fn implementation(
     let lanes = lanes::lanes(&header, Some(&declaration.fields));
     let gradients = gradients::implementation(&emitter, findings.derivatives.as_ref());
     let body = &stages.methods;
-    let self_adjoint = (!is_force).then(|| {
-        let is_self_adjoint = findings.self_adjointness.is_found();
-        quote_spanned!(span=> const SELF_ADJOINT: #private::core::primitive::bool = #is_self_adjoint;)
-    });
     let implementations = quote_spanned! {span=>
         #term
 
         #[automatically_derived]
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
         #of_role {
-            #self_adjoint
             #declared
             #mathematics
         }

@@ -159,7 +159,7 @@ fn in_coordinates(
 }
 
 /// The facts about the effect, and the exchange of its energy.
-pub(super) fn facts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
+pub(super) fn facts(emitter: &Emitter, kernel: &Kernel, is_self_adjoint: bool) -> TokenStream {
     let (span, private, derived) = (Span::mixed_site(), &emitter.header.private, emitter.derived);
     let [unknown, before, after] =
         [&derived.unknown, &derived.kick_before, &derived.kick_after].map(|part| !part.is_zero());
@@ -184,6 +184,7 @@ pub(super) fn facts(emitter: &Emitter, kernel: &Kernel) -> TokenStream {
             denominators: #denominators,
             has_constant_inertia: #is_constant,
             is_quadratic: #is_quadratic,
+            is_self_adjoint: #is_self_adjoint,
             #apart
             operations: #private::Operations { step: #step, iteration: #iteration },
             ..#private::Facts::ANY

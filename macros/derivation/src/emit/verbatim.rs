@@ -132,21 +132,16 @@ fn increments(declaration: &Declaration, header: &Header, bound: &mut BoundNames
 /// The identity, and the maps between vectors and matrices.
 fn maps(declaration: &Declaration, header: &Header, bound: &mut BoundNames) {
     let (span, private, scalar) = (Span::mixed_site(), &header.private, &header.scalar);
-    let one = header.matrix_of_factor();
-    bound.bind("I", quote_spanned!(span=> <#one>::identity()));
+    bound.bind("I", header.identity(declaration.group.rows_of_identity()));
     let three = quote_spanned!(span=> #private::nalgebra::Matrix3<#scalar>);
     bound.bind(
         "vee",
         quote_spanned!(span=> |matrix: #three| <#private::SO3<#scalar> as #private::LieGroup>::vee(&matrix)),
     );
-    let vector = header.vector();
-    if declaration.group.is_product() {
-        let vector = quote_spanned!(span=> #private::nalgebra::Vector3<#scalar>);
-        bound.bind("hat", quote_spanned!(span=> |v: #vector| <#private::SO3<#scalar> as #private::LieGroup>::hat(&v)));
-    } else {
-        let group = header.group();
-        bound.bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
-    }
+    let own = declaration.group.of_hat().and_then(|factor| header.groups().nth(factor));
+    let group = own.unwrap_or_else(|| quote_spanned!(span=> #private::SO3<#scalar>));
+    let vector = quote_spanned!(span=> <#group as #private::LieGroup>::Vector);
+    bound.bind("hat", quote_spanned!(span=> |v: #vector| <#group as #private::LieGroup>::hat(&v)));
 }
 
 /// The value of a name of `advected(…)`, at the positions of both bodies.

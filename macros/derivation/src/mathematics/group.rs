@@ -59,6 +59,25 @@ impl Group {
         self.factors().iter().all(|factor| factor.is_so3 || factor.is_added)
     }
 
+    /// The factors whose increments are matrices.
+    pub fn turning(&self) -> impl Iterator<Item = &Self> {
+        self.factors().iter().filter(|factor| !factor.is_added)
+    }
+
+    /// The factor whose vectors `hat` takes: a rotation if there is one, else the first that isn't added.
+    pub fn of_hat(&self) -> Option<usize> {
+        let place = |of: &dyn Fn(&Self) -> bool| self.factors().iter().position(of);
+        place(&|factor| factor.is_so3).or_else(|| place(&|factor| !factor.is_added))
+    }
+
+    /// The rows of `I`: those of the matrices; `None` where factors have matrices of several sizes, and `I` has that of the
+    /// matrix it stands beside.
+    pub fn rows_of_identity(&self) -> Option<usize> {
+        let mut sizes = self.turning().map(|factor| factor.size);
+        let first = sizes.next().unwrap_or(3);
+        sizes.all(|size| size == first).then_some(first)
+    }
+
     /// The factor with this index; the group itself if it isn't a product.
     pub fn factor(&self, factor: usize) -> &Self {
         self.factors().get(factor).unwrap_or(self)

@@ -130,9 +130,9 @@ pub fn along_directions(graph: &mut Graph, derived: &Continuous, rank: usize, te
 
 /// The matrices of the velocities, if they have symbols of their own.
 fn with_velocities(graph: &mut Graph, derived: &Continuous) -> KnownEntries {
-    let velocities = derived.velocities.iter();
-    let matrices = velocities.filter_map(|velocity| Some((velocity.matrix?, velocity.components)));
-    matrices.map(|(matrix, components)| (matrix, matrix_of(graph, &derived.group, components))).collect()
+    let velocities = derived.velocities.iter().zip(derived.group.factors());
+    let matrices = velocities.filter_map(|(velocity, own)| Some((velocity.matrix?, velocity.components, own)));
+    matrices.map(|(matrix, components, own)| (matrix, matrix_of(graph, own, components))).collect()
 }
 
 /// The matrices that the diamond along any matrix pairs with, one for each factor of the group, by rows. For a

@@ -120,7 +120,7 @@ where
 
 /// Checks every term derived from the declared expression, and the limit of small steps.
 fn check_derived<L: System + Clone>(l: &L, seed: u64) {
-    const { assert!(L::SELF_ADJOINT) };
+    const { assert!(L::FACTS.is_self_adjoint) };
     assert_momenta(l, seed);
     assert_stages(l, seed);
     assert_limit(l, "several bodies");

@@ -6,7 +6,7 @@ use checks::structure::momenta::assert_momenta;
 use checks::structure::stages::assert_stages;
 use declarations::{FloatingBody, PointSpring, RodElement};
 use liestep::groups::{Advected as _, LieGroup as _, R3, SE3};
-use liestep::mechanics::{Along, Coupling, DiscreteLagrangian, Each, Placement, Sum, Term as _};
+use liestep::mechanics::{Along, Coupling, DiscreteLagrangian as _, Each, Effect as _, Placement, Sum, Term as _};
 use liestep::numbers::Bodies;
 use liestep::{NonstandardInertia, SO3, StepError, Stepper, lagrangian};
 use nalgebra::{Matrix4, Vector3, Vector4, Vector6};
@@ -48,7 +48,7 @@ fn arc() -> Start {
 #[test]
 fn what_is_derived_of_an_element() {
     let element = RodElement { k: 3.0, c: 2.0, a: Vector3::new(0.4, 0.1, -0.2), b: Vector3::new(-0.3, 0.2, 0.5) };
-    const { assert!(RodElement::<f64>::SELF_ADJOINT) };
+    const { assert!(RodElement::<f64>::FACTS.is_self_adjoint) };
     assert_momenta(&element, 12);
     assert_stages(&element, 12);
     assert_limit(&rod(40.0, 3.0), "a rod");

@@ -99,7 +99,7 @@ impl Checker<'_> {
             }
             ("vee", SQUARE) => Some(Tree::new(span, VECTOR, Kind::Vee(argument))),
             ("vee", shape) => self.mismatch("vee", "a 3 × 3 matrix", shape, at),
-            ("log", SQUARE) if self.declaration.group.rotates() => Some(logarithm(span, argument)),
+            ("log", SQUARE) if self.is_rotation(&argument) => Some(logarithm(span, argument)),
             ("log", SQUARE) => {
                 self.errors.push(at, "`log` is that of a rotation, and this group isn't SO3");
                 None
@@ -113,6 +113,13 @@ impl Checker<'_> {
             ("exp", shape) => self.mismatch("exp", "a vector of 3", shape, at),
             (_, shape) => self.inverse(span, argument, shape, at),
         }
+    }
+
+    /// Whether a square matrix may be that of a rotation: on products of other groups, too, if it is of a factor SO(3).
+    fn is_rotation(&self, argument: &Tree) -> bool {
+        let group = &self.declaration.group;
+        let of = argument.frames[0].filter(|_| group.is_product());
+        group.rotates() || of.is_some_and(|factor| group.factor(factor).is_so3)
     }
 
     fn inverse(

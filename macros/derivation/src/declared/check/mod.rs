@@ -20,7 +20,7 @@ use syn::spanned::Spanned as _;
 use syn::{Block, Expr, Lit, Pat, Stmt, UnOp};
 
 use crate::declared::errors::Errors;
-use crate::declared::{Declaration, Kind, Name, Role, Shape, Spelling, Tree};
+use crate::declared::{Declaration, Kind, Name, OF_ANY_SIZE, Role, Shape, Spelling, Tree, parts};
 use crate::mathematics::group::{Group, built_in};
 use crate::mathematics::symbolic::Rational;
 use closures::Closure;
@@ -36,9 +36,8 @@ pub fn check(declaration: &Declaration, errors: &mut Errors) -> Option<Rc<Tree>>
 /// All functions of a declaration: those of a constraint, or the one expression of a Lagrangian or a force.
 pub fn functions(declaration: &Declaration, errors: &mut Errors) -> Option<Vec<Rc<Tree>>> {
     let expression = declaration.expression.as_ref()?;
-    let factors = || declaration.group.factors().iter();
-    let turning = factors().find(|factor| !factor.is_added).cloned().or_else(|| built_in("SO3"));
-    let matrices = turning.unwrap_or_else(|| declaration.group.clone());
+    let turning = declaration.group.of_hat().map(|factor| declaration.group.factor(factor).clone());
+    let matrices = turning.or_else(|| built_in("SO3")).unwrap_or_else(|| declaration.group.clone());
     let mut checker = Checker {
         declaration,
         errors,
@@ -57,6 +56,7 @@ pub fn functions(declaration: &Declaration, errors: &mut Errors) -> Option<Vec<R
     let (used, parts) = (checker.used, checker.parts);
     let tree = tree?;
     let functions = if parts.is_empty() { vec![tree.clone()] } else { parts };
+    sized(&functions, errors)?;
     if declaration.role == Role::Constraint {
         constraint::few(&functions, value(expression), errors)?;
     } else if tree.shape != Shape::Scalar {
@@ -75,6 +75,15 @@ pub fn functions(declaration: &Declaration, errors: &mut Errors) -> Option<Vec<R
         usage::check(declaration, &used, errors);
     }
     errors.is_empty().then_some(functions)
+}
+
+/// Reports an `I` that stands alone where matrices have several sizes.
+fn sized(functions: &[Rc<Tree>], errors: &mut Errors) -> Option<()> {
+    let mut all = functions.iter().flat_map(parts);
+    let alone = all.find(|part| part.kind.is_identity() && part.shape == OF_ANY_SIZE);
+    let Some(identity) = alone else { return Some(()) };
+    errors.push(identity.span, operators::ALONE);
+    None
 }
 
 /// The last expression of a block, or the expression itself.

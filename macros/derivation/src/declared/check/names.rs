@@ -6,7 +6,7 @@ use proc_macro2::Span;
 use syn::ext::IdentExt as _;
 
 use super::{Checker, frames};
-use crate::declared::{Declaration, Kind, Name, Shape, Spelling, Tree, named_velocities};
+use crate::declared::{Declaration, Kind, Name, OF_ANY_SIZE, Shape, Spelling, Tree, named_velocities};
 
 impl Checker<'_> {
     pub(super) fn name(&mut self, ident: &syn::Ident) -> Option<Rc<Tree>> {
@@ -24,8 +24,7 @@ impl Checker<'_> {
         }
         let advected = |declaration: &Declaration| declaration.advected.iter().position(|w| w.plain_name() == name);
         let field = |declaration: &Declaration| declaration.fields.iter().position(|field| field.plain_name() == name);
-        let size = self.matrices.size;
-        let square = Shape::Matrix(size, size);
+        let square = self.declaration.group.rows_of_identity().map_or(OF_ANY_SIZE, |rows| Shape::Matrix(rows, rows));
         let increment = self.declaration.factors.iter().position(|factor| factor.name == name);
         let velocity = self.declaration.velocities().iter().position(|velocity| velocity.unraw() == name);
         let displacement = self.displacement(&name);

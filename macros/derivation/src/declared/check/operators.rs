@@ -10,7 +10,7 @@ use super::Checker;
 use super::advice::{called, spelled};
 use super::frames::How;
 use super::methods::{METHODS, integer};
-use crate::declared::{Kind, Name, Scalar, Shape, Tree};
+use crate::declared::{Kind, Name, OF_ANY_SIZE, Scalar, Shape, Tree};
 
 impl Checker<'_> {
     pub(super) fn binary(&mut self, binary: &ExprBinary) -> Option<Rc<Tree>> {
@@ -18,7 +18,11 @@ impl Checker<'_> {
             return self.unknown_operator(binary.op);
         }
         let (left, right) = (self.expression(&binary.left), self.expression(&binary.right));
-        let (left, right) = (left?, right?);
+        let (left, right) = beside_each_other(binary.op, left?, right?);
+        if let Some(identity) = [&left, &right].into_iter().find(|side| side.shape == OF_ANY_SIZE) {
+            self.errors.push(identity.span, ALONE);
+            return None;
+        }
         if self.is_with_identity(binary, &left, &right) || self.is_number_in_front(binary, &left, &right) {
             return None;
         }
@@ -251,3 +255,34 @@ fn entry_of(member: &str) -> Option<(u32, u32)> {
 fn number(expression: &Expr) -> Option<usize> {
     integer(expression)?.try_into().ok()
 }
+
+/// Both sides of an operator, with an `I` of the size of the matrix or the vector it stands beside.
+fn beside_each_other(operator: BinOp, left: Rc<Tree>, right: Rc<Tree>) -> (Rc<Tree>, Rc<Tree>) {
+    let sized = |identity: &Tree, other: Shape, is_left: bool| {
+        let rows = match (operator, other) {
+            (_, OF_ANY_SIZE) => return None,
+            (BinOp::Add(_) | BinOp::Sub(_), Shape::Matrix(rows, columns)) if rows == columns => rows,
+            (BinOp::Mul(_), Shape::Matrix(rows, columns)) => {
+                if is_left {
+                    rows
+                } else {
+                    columns
+                }
+            }
+            _ => return None,
+        };
+        Some(Tree::new(identity.span, Shape::Matrix(rows, rows), Kind::Identity))
+    };
+    match [left.shape, right.shape].map(|shape| shape == OF_ANY_SIZE) {
+        [true, _] => (sized(&left, right.shape, true).unwrap_or(left), right),
+        [_, true] => {
+            let found = sized(&right, left.shape, false);
+            (left, found.unwrap_or(right))
+        }
+        _ => (left, right),
+    }
+}
+
+/// The message for an `I` whose size nothing says.
+pub(super) const ALONE: &str = "the matrices of the factors have several sizes, and `I` has that of the matrix it is added to or \
+                                multiplied by: write `F - I`, or `(F - I) * a` for a scalar `a`";

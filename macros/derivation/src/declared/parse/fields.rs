@@ -150,12 +150,15 @@ pub(super) fn scalar(item: &ItemStruct, errors: &mut Errors) -> Scalar {
     }
 }
 
-/// Checks that points have the dimension of the space that the group acts on; after a mistake they count as its
+/// Checks that points have the dimension of the space that the group, or one of its factors, acts on; after a mistake they count as its
 /// vectors.
 pub(super) fn points(fields: &mut [Field], group: &Group, errors: &mut Errors) {
     for field in fields {
         let FieldKind::Point(rows) = field.kind else { continue };
         let (name, size) = (field.plain_name(), group.size);
+        if group.turning().any(|factor| factor.is_affine() && factor.size == rows) {
+            continue;
+        }
         if group.is_product() {
             let rows = rows - 1;
             errors.push(
@@ -170,14 +173,12 @@ pub(super) fn points(fields: &mut [Field], group: &Group, errors: &mut Errors) {
                 "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use {}",
                 vector_type(size)
             )
-        } else if rows != size {
+        } else {
             let (found, wanted) = (rows - 1, size - 1);
             format!(
                 "`{name}` is a point of {found} coordinates, but the group moves points of {wanted}: use \
                  Point{wanted}<f64>"
             )
-        } else {
-            continue;
         };
         errors.push(field.at, message);
         field.kind = FieldKind::Vector(size);

@@ -30,7 +30,7 @@ impl GroupName {
 
     /// Whether the group is one of translations.
     pub(super) fn is_translation(&self) -> bool {
-        self.built_in().is_some_and(|group| !group.is_so3) && IN_PRODUCTS.contains(&self.name().as_str())
+        self.built_in().is_some() && TRANSLATIONS.contains(&self.name().as_str())
     }
 
     /// Whether the name may be an increment in the place of its group.
@@ -134,20 +134,15 @@ pub(super) fn product(named: Vec<(Ident, GroupName)>, errors: &mut Errors) -> (V
             errors.push_decisive(increment.span(), message);
             break;
         }
-        let known = match named.built_in() {
-            Some(group) if group.is_so3 => Some(group),
-            Some(group) if named.is_translation() => Some(group.added()),
-            _ => None,
-        };
+        let known = named.built_in().map(|group| if named.is_translation() { group.added() } else { group });
         if known.is_none() {
-            let near = match named.built_in() {
-                None if !named.is_own => suggestion(&named.name(), IN_PRODUCTS),
-                _ => String::new(),
-            };
+            let near = if named.is_own { String::new() } else { suggestion(&named.name(), NAMES) };
             let message = if near.is_empty() {
-                "what is declared together turns by `SO3` or is translated by `R1`, `R2` or `R3`: of other products write \
-                 the `DiscreteLagrangian` by hand"
-                    .to_owned()
+                format!(
+                    "the factors of a product are groups of liestep's, {}: of a group of your own write the \
+                     `DiscreteLagrangian` by hand",
+                    NAMES.join(", ")
+                )
             } else {
                 format!("the group `{}` isn't known{near}", named.name())
             };
@@ -161,8 +156,8 @@ pub(super) fn product(named: Vec<(Ident, GroupName)>, errors: &mut Errors) -> (V
     (factors, Group::product(groups))
 }
 
-/// The groups that may be factors of a product.
-const IN_PRODUCTS: [&str; 4] = ["SO3", "R1", "R2", "R3"];
+/// The groups whose increments are vectors, which are added.
+const TRANSLATIONS: [&str; 3] = ["R1", "R2", "R3"];
 
 /// The limit on factors: more would make the derived code grow without bound.
 const MOST_FACTORS: usize = 4;
@@ -276,7 +271,7 @@ fn explained(defect: Defect, array: &ExprArray) -> syn::Error {
 }
 
 /// The limit on the size of matrices: larger ones would make the derived code grow without bound.
-const MOST_ROWS: usize = 8;
+const MOST_ROWS: usize = 16;
 
 fn decimal(expression: &Expr) -> syn::Result<Rational> {
     let message = "write the entry of a generator as a number: `-1.0`";

@@ -343,7 +343,7 @@ fn advected(
             && !found.kind.is_carried_by(size)
             && !matches!(found.kind, FieldKind::Point(_))
         {
-            let message = not_carried(&wanted, found.kind, group, size);
+            let message = not_carried(&wanted, found.kind, group.factor(factor), size);
             errors.push_decisive(found.at, message);
         }
         parameters.push(AdvectedParameter { name: name.clone(), field: index, is_given, seen });
@@ -487,7 +487,7 @@ fn seen<'a>(
 
 /// Whether two factors have one group.
 fn are_alike(group: Option<(&Group, &[Factor])>, a: usize, b: usize) -> bool {
-    group.is_none_or(|(group, _)| group.factor(a).shape() == group.factor(b).shape())
+    group.is_none_or(|(group, _)| group.factor(a).generators == group.factor(b).generators)
 }
 
 /// Reports a parameter whose name means something else.

@@ -7,13 +7,12 @@ use super::residue::Residue;
 use super::sample::{Element, Sample};
 use super::series::Series;
 use super::{Objection, Sureness, reversal};
-use crate::declared::Role;
 
 /// The number of points if degrees give no bound.
 pub(super) const POINTS: u32 = 3;
 
 impl Identities<'_> {
-    /// The bound on the probability of a wrong result, and whether the Lagrangian is its own adjoint at all points, as
+    /// The bound on the probability of a wrong result, and whether the Lagrangian or the force is its own adjoint at all points, as
     /// defined by [`reversal`].
     pub fn confirmed(&self) -> Result<(Sureness, [bool; 3]), Objection> {
         let (group, mut reversed) = (&self.of.declaration.group, [true; 3]);
@@ -50,9 +49,7 @@ impl Identities<'_> {
     ) -> Result<(), Objection> {
         let sample = Sample::at(self.of, element, &mut number);
         self.hold(&sample, number, &mut same)?;
-        if self.of.declaration.role != Role::Force {
-            reversed.iter_mut().zip(reversal(&sample)).for_each(|(all, here)| *all &= here);
-        }
+        reversed.iter_mut().zip(reversal(&sample)).for_each(|(all, here)| *all &= here);
         Ok(())
     }
 

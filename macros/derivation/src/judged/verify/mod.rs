@@ -70,8 +70,7 @@ mod velocity;
 use std::collections::BTreeMap;
 
 use super::places::variables;
-use crate::declared::{Declaration, FieldKind, Name, Role, Shape};
-use crate::mathematics::derive::SelfAdjointness;
+use crate::declared::{Declaration, FieldKind, Name, Shape};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
 use crate::program::{Graph, Input, Kernel, Node, NodeId};
@@ -113,10 +112,8 @@ pub fn verify(of: Subject, kernel: &Kernel) -> Result<Findings, Objection> {
     if sureness != Sureness::Multiple && !identities.are_smooth() {
         return Err(Objection::NotSmooth);
     }
-    let self_adjointness = match of.declaration.role {
-        Role::Force => SelfAdjointness::No,
-        _ => reversal::self_adjointness(reversed, of.derived.adjoint_defect.is_zero()).map_err(Objection::Disagrees)?,
-    };
+    let is_symbolic = of.derived.adjoint_defect.is_zero();
+    let self_adjointness = reversal::self_adjointness(reversed, is_symbolic).map_err(Objection::Disagrees)?;
     let Identities { stages, terms: Terms { graph, jacobian, .. }, derivatives, .. } = identities;
     let (jacobian, hypotheses) = ((graph, jacobian), Vec::new());
     Ok(Findings { self_adjointness, sureness, stages, jacobian, derivatives, hypotheses })

@@ -61,7 +61,8 @@ impl<T: Number> Sample<'_, T> {
     /// The sample with one for the last coordinate of all vectors, on a group of affine maps.
     fn with_points(&self) -> Option<Self> {
         let group = &self.of.derived.group;
-        if !group.is_affine() {
+        let sizes: Vec<usize> = group.turning().filter(|own| own.is_affine()).map(|own| own.size).collect();
+        if sizes.is_empty() {
             return None;
         }
         let mut sample = self.clone();
@@ -71,7 +72,7 @@ impl<T: Number> Sample<'_, T> {
                 Name::Advected(index) => self.of.declaration.advected_kind(*index).variance() == Variance::Vector,
                 _ => false,
             };
-            if is_vector && (value.rows, value.columns) == (group.size, 1) {
+            if is_vector && value.columns == 1 && sizes.contains(&value.rows) {
                 value.entries.pop();
                 value.entries.push(T::ONE);
             }

@@ -201,12 +201,18 @@ impl<'a, T: Number> Sample<'a, T> {
         Evaluation::new(&self.values).of(self.of.tree).first()
     }
 
-    /// `−l_d` of the reversed step: at `F⁻¹`, `F⁻¹·w` and `−h`.
+    /// `−l_d` of the reversed step: at `F⁻¹`, `F⁻¹·w` and `−h`, and of virtual work with the displacements exchanged.
     pub fn reversed(&self) -> T {
         let Element { matrices, inverses, .. } = &self.element;
         let mut values = self.moved([inverses, matrices]);
         values.extend(increments(&self.of.declaration.group, inverses));
         values.entry(Name::Step).and_modify(|h| *h = h.map(|h| -h));
+        for factor in 0..matrices.len() {
+            let [before, after] = [Name::DisplacementBefore(factor), Name::DisplacementAfter(factor)];
+            if let (Some(first), Some(last)) = (values.get(&before).cloned(), values.get(&after).cloned()) {
+                values.extend([(before, last), (after, first)]);
+            }
+        }
         -Evaluation::new(&values).of(self.of.tree).first()
     }
 

@@ -10,7 +10,9 @@
 //!
 //! so it has the stages of any effect, and a part of the Newton Jacobian.
 
-use super::{Context, DeclaredFunction, Derivation, Limit, cayley, directions, momentum_equation, transport};
+use super::{
+    Context, DeclaredFunction, Derivation, Limit, cayley, directions, momentum_equation, self_adjoint, transport,
+};
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId};
 
 /// The reason why the virtual work defines no force.
@@ -54,6 +56,7 @@ pub(super) fn force(
     if ![0, 1, 2, 3].into_iter().all(is_linear) {
         return Err(ForceError::NotLinear);
     }
+    let adjoint_defect = self_adjoint::defect(&context);
     let momentum = before.clone().scaled(-Rational::ONE);
     let jacobian = momentum_equation::jacobian(&context, &momentum, &[]);
     let parts = transport::parts(&context, &momentum, &before);
@@ -71,7 +74,7 @@ pub(super) fn force(
         momentum,
         jacobian,
         energy: none(),
-        adjoint_defect: none(),
+        adjoint_defect,
         flow: None,
         closed: Vec::new(),
         previous: transport::previous(&context),

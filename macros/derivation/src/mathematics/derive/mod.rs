@@ -130,7 +130,7 @@ pub struct Derivation {
     pub jacobian: Expression,
     /// `−∂l_d/∂h`.
     pub energy: Expression,
-    /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`: zero if the Lagrangian is self-adjoint by its normal form.
+    /// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`, or that of the virtual work: zero if it is self-adjoint by its normal form.
     pub adjoint_defect: Expression,
     /// The two sides of the flow on increments (2.5): `μ(F⁺, w⁺)`, and `(L_F)* δl_d/δF` in `F` and `w⁺`; `None` if
     /// there are closed `let`s.

@@ -1,12 +1,15 @@
 //! Whether a Lagrangian is its own adjoint, `l_d(F, w, h) = −l_d(F⁻¹, F⁻¹·w, −h)`: then a step of `−h` undoes a step of
 //! `h`, and the order is even \[RDAE, section 1.4; Hairer, Lubich and Wanner, V.1\].
+//!
+//! A force is, if its virtual work has `δW(F, w, h, η, η⁺) = −δW(F⁻¹, F⁻¹·w, −h, η⁺, η)`. With (2.6) and (2.7) that is
+//! `f⁺(F, w, h) = −f⁻(F⁻¹, F⁻¹·w, −h)`, by which the two equations of a step change places as they do without a force.
 
 use std::collections::BTreeMap;
 
 use super::{Context, action};
 use crate::mathematics::symbolic::{Expression, Rational};
 
-/// The self-adjointness of a Lagrangian, and its proof.
+/// The self-adjointness of a Lagrangian or of a force, and its proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelfAdjointness {
     /// The normal forms are equal.
@@ -28,7 +31,8 @@ impl SelfAdjointness {
     }
 }
 
-/// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`; terms that cancel by relations beyond the normal form remain.
+/// `l_d(F, w, h) + l_d(F⁻¹, F⁻¹·w, −h)`, of virtual work with the displacements exchanged; terms that cancel by relations
+/// beyond the normal form remain.
 pub(super) fn defect(context: &Context) -> Expression {
     let declared = context.declared;
     // Closed `let`s aren't compared.
@@ -43,6 +47,9 @@ pub(super) fn defect(context: &Context) -> Expression {
     for (factor, one) in context.directions.factors.iter().enumerate() {
         let (inverse, f) = turned_back(factor);
         map.extend([(one.increment, inverse), (one.inverse, f)]);
+    }
+    for &[before, after] in declared.displacements.iter().flat_map(|both| &both.0) {
+        map.extend([(before, context.symbol(after)), (after, context.symbol(before))]);
     }
     for &w in &declared.advected {
         map.insert(w.symbol, action::back(context, w, &turned_back, &context.symbol(w.symbol)));

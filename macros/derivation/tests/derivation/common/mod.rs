@@ -103,7 +103,7 @@ pub(crate) fn evaluated<T: Number>(graph: &Graph, outputs: &[NodeId], input: &dy
 
 /// Whether an expansion says that a step of `−h` undoes one of `h`.
 pub(crate) fn is_self_adjoint(expansion: &TokenStream) -> bool {
-    expansion.to_string().contains("SELF_ADJOINT : :: liestep :: __private :: core :: primitive :: bool = true")
+    expansion.to_string().contains("is_self_adjoint : true")
 }
 
 /// The message of a declaration that is refused.

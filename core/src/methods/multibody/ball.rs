@@ -1,0 +1,313 @@
+//! Elimination of a body on a ball joint: its shift and the joint's force are substituted, so that blocks of three are left.
+//!
+//! With `T`, `T_b` the maps from the turns of the body and of its parent to the shifts of the joint's point after the step,
+//! `S`, `S_b` those before it, the shift `ξ = x_b + T_b z_b` of the parent's point and the force `P`, the equations of a body
+//! with unknowns `(z, x)` are
+//!
+//! ```text
+//! A₁₁ z + A₁₂ x + Sᵀ P = −r₁        A₂₁ z + A₂₂ x + P = −r₂        T z + x − ξ = −g
+//! ```
+//!
+//! Their solution is affine in `ξ`, and the parent sees a mass `Π` at the joint and a momentum `q`:
+//!
+//! ```text
+//! G = A₁₂ − Sᵀ A₂₂       H = A₂₁ − A₂₂ T        B = A₁₁ − G T − Sᵀ A₂₁       Π = A₂₂ − H B⁻¹ G
+//! w = B⁻¹ (r₁ − Sᵀ r₂ − G g)                    q = r₂ − A₂₂ g − H w
+//! z = −w − B⁻¹ G ξ       x = ξ − g − T z        P = −q − Π ξ
+//! A_b ← A_b + (S_b I)ᵀ Π (T_b I)                r_b ← r_b + (S_b I)ᵀ q
+//! ```
+//!
+//! Functions of attitudes beyond these three, as those of a pin, are a [`Turning`].
+//!
+//! This is the elimination of [`Chain`](crate::methods::Chain), for bodies with unknowns of their own.
+
+use alloc::boxed::Box;
+
+use nalgebra::{Matrix3, Matrix6, Vector2, Vector3, Vector6};
+
+use super::ends::Ends;
+use super::point_joint::PointJoint;
+use super::square::{Square, ZERO, loaded, matrix, shift_of, stored, turn_of};
+use super::turning::Turning;
+use crate::numbers::{Columns, Plain, Register, cross, dot, padded, square};
+
+/// The slopes of a ball joint towards the root, and the factors of its body.
+#[derive(Clone)]
+pub(super) struct Ball {
+    joint: PointJoint,
+    /// The sign of the functions that hold points: one if the body is below, minus one if it is above.
+    sign: f64,
+    /// The joint's points, m: in the axes of the body, and of its parent or of space.
+    points: [Vector3<f64>; 2],
+    /// The blocks `A₁₁`, `A₂₁`, `A₁₂` and `A₂₂` of the body's matrix.
+    own: [Square; 4],
+    /// The matrices `Sᵀ` and `S_bᵀ`.
+    before: [Square; 2],
+    /// The matrices `T` and `T_b`.
+    after: [Square; 2],
+    /// The factors `B⁻¹`, `B⁻¹ G`, `G`, `H` and `Π`.
+    inverse: Square,
+    z: Square,
+    g: Square,
+    h: Square,
+    beyond: Square,
+    /// The joint's further functions.
+    pub(super) turning: Option<Box<Turning>>,
+}
+
+/// Adds blocks to the matrix of a body without a ball joint.
+#[hot]
+pub(super) fn add_blocks<R: Register>(m: &mut Matrix6<f64>, [first, second, third, fourth]: [Columns<R>; 4]) {
+    add_block::<R, 0, 0>(m, first);
+    add_block::<R, 3, 0>(m, second);
+    add_block::<R, 0, 3>(m, third);
+    add_block::<R, 3, 3>(m, fourth);
+}
+
+/// Adds to a block of three rows and columns.
+#[hot]
+fn add_block<R: Register, const ROW: usize, const COLUMN: usize>(m: &mut Matrix6<f64>, added: Columns<R>) {
+    for (column, entries) in m.data.0[COLUMN..COLUMN + 3].iter_mut().zip(added.entries()) {
+        for k in 0..3 {
+            column[ROW + k] += entries[k];
+        }
+    }
+}
+
+/// The matrix `Sᵀ` of a point in the axes of a body with this attitude.
+#[hot]
+fn transposed_slope<R: Register>(attitude: Columns<R>, point: R) -> Square {
+    let [x, y, z] = attitude.transposed().0;
+    Columns([cross(point, x), cross(point, y), cross(point, z)]).entries()
+}
+
+/// The matrix `T` of a point at the end of this arm, for turns by the columns.
+#[hot]
+fn slope<R: Register>(turn: Columns<R>, arm: R) -> Square {
+    let [x, y, z] = turn.0;
+    Columns([cross(x, arm), cross(y, arm), cross(z, arm)]).entries()
+}
+
+impl Ball {
+    /// A joint towards the root, of which the body is the one below or the one above.
+    pub(super) fn new(joint: PointJoint, is_below: bool) -> Self {
+        let sides = |[above, below]: [Vector3<f64>; 2]| if is_below { [below, above] } else { [above, below] };
+        let (own, before, after) = ([ZERO; 4], [ZERO; 2], [ZERO; 2]);
+        let (inverse, z, g, h, beyond) = (ZERO, ZERO, ZERO, ZERO, ZERO);
+        let (sign, points) = (if is_below { 1.0 } else { -1.0 }, sides(joint.points));
+        let turning = (joint.count > 0).then(|| Box::new(Turning::new(joint.cosines.map(sides), joint.count)));
+        Self { joint, sign, points, own, before, after, inverse, z, g, h, beyond, turning }
+    }
+
+    /// Whether these are the equations of such a joint.
+    pub(super) fn is_like(&self, joint: &PointJoint, is_below: bool) -> bool {
+        self.joint == *joint && (self.sign > 0.0) == is_below
+    }
+
+    /// Adds to the body's matrix.
+    pub(super) fn add_matrix(&mut self, m: &Matrix6<f64>) {
+        let before = self.own;
+        self.set_matrix(Plain::ZERO, m);
+        for (entry, before) in self.own.as_flattened_mut().iter_mut().zip(before.as_flattened()) {
+            entry.iter_mut().zip(before).for_each(|(entry, before)| *entry += before);
+        }
+    }
+
+    /// The maps `E` and `C` of the joint for the body, and for its parent.
+    pub(super) fn ends(&self) -> [Ends; 2] {
+        let mut both = [0, 1].map(|side| {
+            let (sign, mut ends) = (if side == 0 { self.sign } else { -self.sign }, Ends::ZERO);
+            let [before, after] = [matrix(&self.before[side]), matrix(&self.after[side]).transpose()];
+            for (columns, turns) in [(&mut ends.before, before), (&mut ends.after, after)] {
+                columns.fixed_view_mut::<3, 3>(0, 0).copy_from(&(turns * sign));
+                columns.fixed_view_mut::<3, 3>(3, 0).copy_from(&Matrix3::from_diagonal_element(sign));
+            }
+            ends
+        });
+        if let Some(turning) = &self.turning {
+            turning.add_to(&mut both);
+        }
+        both
+    }
+
+    /// The square of the longest lever arm, m².
+    pub(super) fn squared_arm(&self) -> f64 {
+        self.points.iter().map(Vector3::norm_squared).fold(0.0, f64::max)
+    }
+
+    /// The momenta that these multipliers take from the body and from its parent.
+    pub(super) fn reactions(&self, multipliers: &Vector6<f64>) -> [Vector6<f64>; 2] {
+        let force = multipliers.fixed_rows::<3>(0) * self.sign;
+        let torque = |side: usize| {
+            let of = |turning: &Turning| matrix(&turning.before[side]) * multipliers.fixed_rows::<3>(3);
+            self.turning.as_deref().map_or_else(Vector3::zeros, of)
+        };
+        [0, 1].map(|side| {
+            let (force, mut reaction) = (if side == 0 { force } else { -force }, Vector6::zeros());
+            let [x, y, z] = self.before[side].map(|[x, y, z, _]| Vector3::new(x, y, z));
+            let moment = x * force.x + y * force.y + z * force.z;
+            reaction.fixed_rows_mut::<3>(0).copy_from(&(moment + torque(side)));
+            reaction.fixed_rows_mut::<3>(3).copy_from(&force);
+            reaction
+        })
+    }
+}
+
+#[hot]
+impl Ball {
+    /// Sets the body's matrix.
+    pub(super) fn set_matrix<R: Register>(&mut self, zero: R, m: &Matrix6<f64>) {
+        let columns = &m.data.0;
+        for k in 0..3 {
+            let ([x, y, z, u, v, w], [a, b, c, d, e, f]) = (columns[k], columns[k + 3]);
+            self.own[0][k] = zero.of([x, y, z, u]).entries();
+            self.own[1][k] = zero.of([u, v, w, z]).entries();
+            self.own[2][k] = zero.of([a, b, c, d]).entries();
+            self.own[3][k] = zero.of([d, e, f, c]).entries();
+        }
+    }
+
+    /// Sets `S` at these attitudes of the body, and of its parent if there is one.
+    pub(super) fn set_before<R: Register>(&mut self, zero: R, own: &Matrix3<f64>, parent: Option<&Matrix3<f64>>) {
+        let own = stored(zero, own);
+        self.before[0] = transposed_slope(own, zero.of(padded(&self.points[0])));
+        let mut other = Columns::multiple(zero, 1.0);
+        if let Some(parent) = parent {
+            other = stored(zero, parent);
+            self.before[1] = transposed_slope(other, zero.of(padded(&self.points[1])));
+        }
+        if let Some(turning) = &mut self.turning {
+            turning.before = turning.slopes(zero, [own, other], [own, other]);
+        }
+    }
+
+    /// Sets `T` at these attitudes, for unknowns that turn the bodies by these maps.
+    pub(super) fn set_after<R: Register>(
+        &mut self,
+        zero: R,
+        [own, turn]: [&Matrix3<f64>; 2],
+        parent: Option<[&Matrix3<f64>; 2]>,
+    ) {
+        let (own, turn) = (stored(zero, own), stored(zero, turn));
+        self.after[0] = slope(turn, own.map(zero.of(padded(&self.points[0]))));
+        let mut other = [Columns::multiple(zero, 1.0); 2];
+        if let Some(parent) = parent {
+            other = [stored(zero, parent[0]), stored(zero, parent[1])];
+            self.after[1] = slope(other[1], other[0].map(zero.of(padded(&self.points[1]))));
+        }
+        if let Some(turning) = &mut self.turning {
+            turning.after = turning.slopes(zero, [own, other[0]], [turn, other[1]]);
+        }
+    }
+
+    /// Sets `T = S`.
+    pub(super) fn set_velocities<R: Register>(&mut self, zero: R) {
+        for side in 0..2 {
+            self.after[side] = loaded(zero, &self.before[side]).transposed().entries();
+        }
+        if let Some(turning) = &mut self.turning {
+            turning.after = turning.before;
+        }
+    }
+
+    /// Eliminates the body. Returns the determinant of `B` relative to its diagonal.
+    pub(super) fn factorise<R: Register>(&mut self, zero: R) -> f64 {
+        let [a11, a21, a12, a22] = &self.own;
+        let (a11, a21, a12, a22) = (loaded(zero, a11), loaded(zero, a21), loaded(zero, a12), loaded(zero, a22));
+        let (s, t) = (loaded(zero, &self.before[0]), loaded(zero, &self.after[0]));
+        let (g, h) = (a12 - s * a22, a21 - a22 * t);
+        let b = a11 - g * t - s * a21;
+        // Cramer's rule; a determinant of zero leads to numbers that aren't finite.
+        let [x, y, z] = b.0;
+        let rows = [cross(y, z), cross(z, x), cross(x, y)];
+        let determinant = dot(x, rows[0]);
+        let inverse = Columns(rows).transposed().scaled(zero.of([1.0; 4]) / determinant);
+        let mut z = inverse * g;
+        if let Some(turning) = &mut self.turning {
+            let [by_turn, by_point] = turning.factorise(zero, inverse, z);
+            z = z + by_point;
+            turning.force = (h * by_turn).entries();
+        }
+        self.beyond = (a22 - h * z).entries();
+        (self.inverse, self.z, self.g, self.h) = (inverse.entries(), z.entries(), g.entries(), h.entries());
+        let [[b11, ..], [_, b22, ..], [_, _, b33, _]] = b.entries();
+        determinant.entries()[0] / (b11 * b22 * b33).abs()
+    }
+
+    /// The mass at the joint, as blocks of the matrix of the parent in the order of its own.
+    pub(super) fn of_parent<R: Register>(&self, zero: R) -> [Columns<R>; 4] {
+        let beyond = loaded(zero, &self.beyond);
+        let (s, t) = (loaded(zero, &self.before[1]), loaded(zero, &self.after[1]));
+        let mut turned = beyond * t;
+        let mut of_turn = s * beyond;
+        let Some(turning) = &self.turning else {
+            return [s * turned, turned, of_turn, beyond];
+        };
+        turned = turned - loaded(zero, &turning.force);
+        let [by_turn, by_point] = &turning.of_parent;
+        let (by_turn, by_point) = (loaded(zero, by_turn), loaded(zero, by_point));
+        of_turn = of_turn + by_point;
+        [s * turned + (by_turn + by_point * t), turned, of_turn, beyond]
+    }
+
+    /// Adds to the blocks of the body's matrix.
+    pub(super) fn add<R: Register>(&mut self, zero: R, [first, second, third, fourth]: [Columns<R>; 4]) {
+        let [a11, a21, a12, a22] = &mut self.own;
+        *a11 = (loaded(zero, a11) + first).entries();
+        *a21 = (loaded(zero, a21) + second).entries();
+        *a12 = (loaded(zero, a12) + third).entries();
+        *a22 = (loaded(zero, a22) + fourth).entries();
+    }
+
+    /// The pair `w` and `q` for the right-hand side `r` and this gap, the addition to the right-hand side of the parent, and the
+    /// squares of the opposed parts of `w` and of the shift.
+    pub(super) fn inwards<R: Register>(
+        &self,
+        zero: R,
+        [r1, r2]: [R; 2],
+        gap: &mut Vector6<f64>,
+    ) -> ([R; 2], [R; 2], Vector2<f64>) {
+        let gamma = turn_of(zero, gap) * zero.of([self.sign; 4]);
+        let inverse = loaded(zero, &self.inverse);
+        let taken = inverse.map(loaded(zero, &self.before[0]).map(r2));
+        let mut w = inverse.map(r1 - loaded(zero, &self.g).map(gamma)) - taken;
+        let mut torque = zero;
+        if let Some(turning) = &self.turning {
+            let [s, turned, of_parent] = turning.reduced(zero, w, shift_of(zero, gap));
+            (w, torque) = (w + turned, of_parent);
+            gap.as_mut_slice()[3..].copy_from_slice(&s.entries()[..3]);
+        }
+        let q = r2 - loaded(zero, &self.own[3]).map(gamma) - loaded(zero, &self.h).map(w);
+        let opposed = square(taken);
+        let size = Vector2::new(2.0 * opposed, self.points[0].norm_squared() * opposed);
+        ([w, q], [loaded(zero, &self.before[1]).map(q) + torque, q], size)
+    }
+
+    /// The unknowns of the body by those of its parent; replaces the gap by the multipliers.
+    pub(super) fn outwards<R: Register>(
+        &self,
+        zero: R,
+        [w, q]: [R; 2],
+        parent: Option<[R; 2]>,
+        gap: &mut Vector6<f64>,
+    ) -> [R; 2] {
+        let gamma = turn_of(zero, gap) * zero.of([self.sign; 4]);
+        let (mut turn, mut point) = (zero, zero);
+        if let Some(of) = parent {
+            turn = of[0];
+            point = of[1] + loaded(zero, &self.after[1]).map(turn);
+        }
+        let mut z = zero - w - loaded(zero, &self.z).map(point);
+        let mut force = q + loaded(zero, &self.beyond).map(point);
+        if let Some(turning) = &self.turning {
+            let [multipliers, turned] = turning.completed(zero, shift_of(zero, gap), turn, point);
+            z = z - turned;
+            force = force - loaded(zero, &turning.force).map(turn);
+            gap.as_mut_slice()[3..].copy_from_slice(&multipliers.entries()[..3]);
+        }
+        let x = point - gamma - loaded(zero, &self.after[0]).map(z);
+        let [a, b, c, _] = (force * zero.of([-self.sign; 4])).entries();
+        gap.as_mut_slice()[..3].copy_from_slice(&[a, b, c]);
+        [z, x]
+    }
+}
