@@ -26,7 +26,7 @@ fn assert_tip(tip: Vector3<f64>) {
 
 #[test]
 fn a_file() {
-    let scene = liestep_scene::parse("README.md", &listing("toml", "title = \"A heavy top\"")).unwrap();
+    let scene = liestep_scene::Scene::parse("README.md", &listing("toml", "title = \"A heavy top\"")).unwrap();
     let run = scene.run().unwrap();
     let last = run.samples().last().unwrap();
     assert!((last.time - 10.0).abs() < 1e-9);

@@ -223,6 +223,21 @@ def test_mistakes_of_tables_have_lines_of_their_text():
     assert "moments" in ls.scene(TABLES).text
 
 
+def test_an_accuracy_of_several_bodies() -> None:
+    """Without a step two bodies run to an accuracy of 1e-6, and a loop, which needs a step, is refused."""
+    text = acrobot(0.001, ", angle = 0.5").text
+    assert text is not None
+    scene = ls.scene("acrobot.toml", text.replace("step = 0.001, ", ""))
+    run = scene.run()
+    assert "the end is off by at most about" in run.summary
+    assert run.steps >= 1000
+    fine = ls.scene("fine.toml", text.replace("step = 0.001", "step = 0.01, method = { composition = 'Kahan-Li 8' }")).run()
+    for name in ("upper_x", "fore_x", "fore_z"):
+        assert abs(run[name][-1] - fine[name][-1]) < 5e-6
+    with pytest.raises(ls.Error, match="chosen for an accuracy by trial runs"):
+        scene.start()
+
+
 def test_an_effective_inertia_is_that_of_no_rigid_body():
     """Moments of a space agency's demonstration, beside Euler's equations."""
     moments, start = np.array([5174, 3593, 245.4]), np.array([0.02, 0.5, 0.03])

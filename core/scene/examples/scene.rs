@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = Path::new("out/scene");
     fs::create_dir_all(folder)?;
     for path in std::env::args_os().skip(1).map(PathBuf::from) {
-        let scene = liestep_scene::read(&path)?;
+        let scene = liestep_scene::Scene::read(&path)?;
         let run = scene.run()?;
         println!("{}", scene.summary(&run));
         let result = folder.join(path.file_name().unwrap_or_default());

@@ -17,7 +17,7 @@
 //! step = "20 ms"
 //! duration = 80
 //! "#;
-//! let scene = liestep_scene::parse("wing-nut.toml", text)?;
+//! let scene = liestep_scene::Scene::parse("wing-nut.toml", text)?;
 //! let run = scene.run()?;
 //! assert_eq!(run.samples().len(), 4001);
 //! std::fs::write(std::env::temp_dir().join("wing-nut.html"), scene.page(&run))?;
@@ -36,7 +36,7 @@ pub use file::kepler::orbit;
 pub use file::kinds::Scene;
 pub use file::mistake::{Kind, Mistake, visible};
 pub use file::quantity::ratio;
-pub use file::read::{parse, read};
+
 pub use file::sample::{BodySample, Sample};
 pub use file::scene::SceneFile;
 pub use file::sweep::Sweep;

@@ -29,7 +29,7 @@ const FILES: [(&str, &str); 11] = [
 pub(crate) fn groups() -> Vec<Group> {
     let kernel = |(name, tables): (&'static str, &'static str)| {
         Kernel::new(name, move || {
-            let scene = liestep_scene::parse("bench.toml", &text(tables))?;
+            let scene = liestep_scene::Scene::parse("bench.toml", &text(tables))?;
             Ok(move |steps| {
                 scene.first(steps)?;
                 Ok(0)
@@ -54,7 +54,7 @@ const MEMBERS: u32 = 8_000;
 pub(crate) fn members() -> Result<(), Failure> {
     let draws = "[ensemble]\nmembers = 8000\ndraw.gravity.m = { mean = 1.0, deviation = 0.01 }\n\
                  draw.start.velocity = [0.5, 2, { from = 8.0, to = 12.0 }]\n";
-    let scene = liestep_scene::parse("bench.toml", &format!("{}{draws}", text(FILES[1].1)))?;
+    let scene = liestep_scene::Scene::parse("bench.toml", &format!("{}{draws}", text(FILES[1].1)))?;
     let (drawn, whole) = (scene.ensemble().ok_or("no ensemble")?, scene.whole().ok_or("not one program")?);
     let member = |number: u32| {
         let share = f64::from(number) / f64::from(MEMBERS);

@@ -6,7 +6,7 @@ use liestep::SO3;
 use liestep::effects::{CayleyBody, RigidBody};
 use liestep::mechanics::Inertia;
 use liestep::prelude::*;
-use liestep_scene::{Form, Sample, parse};
+use liestep_scene::{Form, Sample, Scene};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// A scene with this line for the attitude.
@@ -18,7 +18,7 @@ fn text(attitude: &str) -> String {
 }
 
 fn start(text: &str) -> Sample {
-    parse("a.toml", text).unwrap().first(1).unwrap().samples()[0].clone()
+    Scene::parse("a.toml", text).unwrap().first(1).unwrap().samples()[0].clone()
 }
 
 /// The attitude of a scene's start, body to space.
@@ -123,7 +123,7 @@ fn names_change_no_bit() {
         )
     };
     let all = [["j", "m", "g", "r"], ["z", "y", "x", "q"], ["p", "b", "m", "a"], ["a", "b", "c", "d"]].map(|names| {
-        let scene = parse("own.toml", &own(names)).unwrap();
+        let scene = Scene::parse("own.toml", &own(names)).unwrap();
         let end = scene.run().unwrap().samples().last().unwrap().clone();
         let text = scene.written(Form::C).unwrap().unwrap();
         let [a, b, c, d] = names;

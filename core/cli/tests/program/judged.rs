@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 use crate::called::{called, folder, refuses};
 
 fn one(text: &str) -> Scene {
-    liestep_scene::parse("one.toml", text).unwrap()
+    liestep_scene::Scene::parse("one.toml", text).unwrap()
 }
 
 fn several(text: &str) -> Scene {

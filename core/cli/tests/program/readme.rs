@@ -13,13 +13,13 @@ fn its_scenes_run() {
     let blocks: Vec<&str> = readme.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
     let scene = blocks.iter().find(|block| block.starts_with("title = \"My top\"")).unwrap();
     let more = blocks.iter().find(|block| block.starts_with("[[event]]")).unwrap();
-    let run = liestep_scene::parse("README.md", scene).unwrap().run().unwrap();
+    let run = liestep_scene::Scene::parse("README.md", scene).unwrap().run().unwrap();
     // The picture has all steps, and the last is at the end.
     assert!(run.steps() >= 1000 && run.samples().len() as u64 == run.steps() + 1, "{}", run.steps());
     assert!((run.samples().last().unwrap().time - 20.0).abs() < 1e-9);
     let several = blocks.iter().find(|block| block.contains("[[body]]")).unwrap();
-    liestep_scene::parse("README.md", several).unwrap().run().unwrap();
-    let varied = liestep_scene::parse("README.md", &format!("{scene}{more}")).unwrap();
+    liestep_scene::Scene::parse("README.md", several).unwrap().run().unwrap();
+    let varied = liestep_scene::Scene::parse("README.md", &format!("{scene}{more}")).unwrap();
     assert_eq!(varied.sweep().unwrap().points.len(), 6);
     assert_eq!(varied.events().collect::<Vec<_>>(), ["fallen"]);
     varied.first(100).unwrap();

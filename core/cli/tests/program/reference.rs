@@ -73,7 +73,7 @@ impl<'a> Reference<'a> {
 }
 
 pub(crate) fn one(text: &str) -> Scene {
-    liestep_scene::parse("group.toml", text).unwrap_or_else(|mistake| panic!("{mistake}\n{text}"))
+    liestep_scene::Scene::parse("group.toml", text).unwrap_or_else(|mistake| panic!("{mistake}\n{text}"))
 }
 
 pub(crate) fn last(run: &Run) -> &Sample {

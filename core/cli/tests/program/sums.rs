@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use liestep_scene::{Sample, parse};
+use liestep_scene::{Sample, Scene};
 
 /// Marsaglia's xorshift.
 struct Random(u64);
@@ -80,7 +80,7 @@ fn end(parts: &[String]) -> Sample {
     for part in parts {
         text.write_str(part).unwrap();
     }
-    let file = parse("sum.toml", &text).unwrap_or_else(|mistake| panic!("{mistake}\n{text}"));
+    let file = Scene::parse("sum.toml", &text).unwrap_or_else(|mistake| panic!("{mistake}\n{text}"));
     let run = file.run().unwrap_or_else(|mistake| panic!("{mistake}\n{text}"));
     run.samples().last().unwrap().clone()
 }

@@ -405,12 +405,80 @@ fn an_ensemble_of_several_bodies() {
     assert_eq!(passages, 6);
     let wrong = |draw: &str| message(&format!("{text}[ensemble]\nmembers = 2\n{draw}\n"));
     let limited = text.replacen("rate = 2\n", "rate = 2\nlimits = { from = -1, to = 1 }\n", 1);
-    let of_limits =
-        message(&format!("{limited}[ensemble]\nmembers = 2\ndraw.joint.joint-1.limits.to = {{ from = 1, to = 2 }}\n"));
-    assert!(
-        of_limits.contains("an event knows the orbit, the angles, the wheels and the joints of the file"),
-        "{of_limits}"
-    );
+    let zero = "draw.joint.joint-1.zero.euler = [0, { from = 0, to = 1 }, 0]";
+    let of_limits = message(&format!("{limited}[ensemble]\nmembers = 2\n{zero}\n"));
+    let knows = "an event knows the orbit, the angles, the wheels and the joints of the file";
+    assert!(of_limits.contains(knows), "{of_limits}");
     assert!(wrong("draw.joint.elbow.rate = { from = 1, to = 2 }").contains("no `joint` is called `elbow`"));
     assert!(wrong("draw.start.velocity = [1, { from = 1, to = 2 }, 0]").contains("the file has no `start`"));
+}
+
+/// Effects turn a body among several as they turn a single one; a torque and drag about a principal axis as by hand.
+#[test]
+fn effects_turn_one_of_several_bodies() {
+    let ends = |effect: &str, velocity: &str, rest: &str| {
+        let body = "moments = [0.2, 0.3, 0.4]\nkinetic = \"geodesic\"\n";
+        let start = format!("euler = [0.1, 0.4, 0.2]\nvelocity = {velocity}\n");
+        let run_of = format!("[run]\nduration = 1\nstep = 0.005\n{rest}");
+        let other = "[[body]]\nname = \"b\"\nm = 1\nmoments = [1, 1, 1]\nposition = [3, 0, 0]\nstart.euler = [0, 0, 0]\n\
+                     start.velocity = [0, 1, 0]\n";
+        let (key, values) = effect.split_once(' ').unwrap();
+        let alone = format!("title = \"a\"\n[body]\n{body}[{key}]\n{values}\n[start]\n{start}{run_of}");
+        let of_start = start.replace("euler", "start.euler").replace("velocity", "start.velocity");
+        let among = format!(
+            "title = \"a\"\n[[body]]\nname = \"a\"\nm = 2\n{body}position = [0, 0, 1]\n{of_start}[body.{key}]\n{values}\n{other}{run_of}"
+        );
+        [alone, among].map(|text| run(&text).samples().last().unwrap().clone())
+    };
+    let effects = [
+        "torque torque = [0.1, -0.2, 0.3]",
+        "drag c = 0.05",
+        "rotor spin = [0.1, 0.3, -0.2]",
+        "dipole moment = [1, 2, 0]\nfield = [0, 0.3, 0.4]",
+        "magnetic_damping k = 0.5\nfield = [0, 0.3, 0.4]",
+    ];
+    for effect in effects {
+        let [alone, among] = ends(effect, "[1, 2, 3]", "").map(|sample| sample.bodies[0]);
+        let apart = (alone.attitude.as_matrix() - among.attitude.as_matrix())
+            .amax()
+            .max((alone.velocity - among.velocity).amax());
+        assert!(apart < 1e-11, "{effect}: {apart:e}");
+        assert_eq!(among.position, Vector3::new(0.0, 0.0, 1.0));
+    }
+    let [_, torque] = ends(effects[0].replace("[0.1, -0.2, 0.3]", "[0, 0, 0.3]").as_str(), "[0, 0, 0]", "");
+    assert!((torque.bodies[0].velocity - Vector3::new(0.0, 0.0, 0.3 / 0.4)).amax() < 1e-13);
+    let [_, drag] = ends(effects[1], "[0, 2, 0]", "");
+    let expected = 2.0 * f64::exp(-0.05 / 0.3);
+    assert!((drag.bodies[0].velocity.y / expected - 1.0).abs() < 1e-5, "{} {expected}", drag.bodies[0].velocity.y);
+    assert_eq!(drag.bodies[1].velocity, Vector3::y());
+
+    let text = |body: &str, rest: &str| {
+        format!(
+            "title = \"a\"\n[[body]]\nname = \"a\"\nm = 1\nposition = [0, 0, 0]\nstart.euler = [0, 0, 0]\nstart.velocity = [0, 0, 1]\n{body}\n\
+                 [run]\nduration = 1\n{rest}\n"
+        )
+    };
+    let whole = text("moments = [1, 1, 1]\ndrag.c = 0.1", "accuracy = 1e-4");
+    let choice = run(&whole).choice().unwrap().clone();
+    assert_eq!((choice.offers().len(), system(&whole).about().as_str()), (1, "1 body + drag, 1 s to 1e-4"));
+    assert!(system(&whole).derivation().contains("Drag"));
+    let composed = "step = 0.1\nmethod = { composition = \"Suzuki 4\" }";
+    let refused = [
+        (
+            text("moments = [0, 0, 0]\ntorque.torque = [0, 0, 1]", "step = 0.1"),
+            "`torque` turns a body, and a point mass has no inertia",
+        ),
+        (
+            text("moments = [1, 1, 1]\ndrag.c = 0.1", composed),
+            "a composition needs a conservative scene; drag of `a` does work",
+        ),
+        (
+            text("moments = [1, 1, 1]\nmagnetic_damping = { k = 1, field = { equator = [0, 0, 1] } }", "step = 0.1"),
+            "`field` of `magnetic_damping` follows the orbit of one body",
+        ),
+    ];
+    for (text, expected) in refused {
+        let found = message(&text);
+        assert!(found.contains(expected), "{found}");
+    }
 }

@@ -57,18 +57,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     if let Some(start) = document.get_ref().get("start") {
         file.start = Beginning::read(start, &file.group, file.orbit.as_ref()).map_err(located)?;
     }
-    if let Some(steps) = file.run.steps_per_orbit {
-        let wrong = |message: String| located((span(document, &["run", "steps_per_orbit"]), message));
-        if has(document, "run", "step") || has(document, "run", "accuracy") {
-            return Err(wrong("`steps_per_orbit` stands in the place of a `step` or an `accuracy`".to_owned()));
-        }
-        let orbit = file.orbit.ok_or_else(|| wrong("the file has no table `[orbit]`".to_owned()))?;
-        if file.turning().next().is_none() {
-            return Err(wrong("no parameter follows the orbit: give a `step`".to_owned()));
-        }
-        let step = orbit.period() / f64::from(steps.get());
-        file.run.pace = Pace::Step { step, steps: equal_steps(step, file.run.duration).map_err(wrong)? };
-    }
+    per_orbit(document, &mut file).map_err(located)?;
     if let Pace::Step { step, .. } = file.run.pace {
         settle(&mut control, &mut wheel, (step, file.orbit.is_some())).map_err(located)?;
     }
@@ -114,6 +103,23 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     };
     file.origin = Origin { path: path.to_owned(), places };
     Ok(file)
+}
+
+/// The steps of a file that says how many there are per orbit.
+fn per_orbit(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage> {
+    let Some(steps) = file.run.steps_per_orbit else { return Ok(()) };
+    let wrong = |message: &str| (span(document, &["run", "steps_per_orbit"]), message.to_owned());
+    if has(document, "run", "step") || has(document, "run", "accuracy") {
+        return Err(wrong("`steps_per_orbit` stands in the place of a `step` or an `accuracy`"));
+    }
+    let orbit = file.orbit.ok_or_else(|| wrong("the file has no table `[orbit]`"))?;
+    if file.turning().next().is_none() {
+        return Err(wrong("no parameter follows the orbit: give a `step`"));
+    }
+    let step = orbit.period() / f64::from(steps.get());
+    let steps = equal_steps(step, file.run.duration).map_err(|message| wrong(&message))?;
+    file.run.pace = Pace::Step { step, steps };
+    Ok(())
 }
 
 /// Conflicts with a Hamiltonian, which has all terms in its text, and steps of its own.

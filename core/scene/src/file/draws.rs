@@ -115,14 +115,14 @@ impl SceneEnsemble {
 
 impl SceneEnsemble {
     /// Whether a number is drawn by which columns are read from a state, or events are found: of the orbit, of the angle of an
-    /// axis, of the axis or the inertia of a wheel, or of the zero or the limits of a joint.
+    /// axis, of the axis or the inertia of a wheel, or of the zero of a joint.
     #[must_use]
     pub fn draws_what_columns_read(&self) -> bool {
         self.axes.iter().any(|Axis { keys, .. }| {
             let of = |at: usize| keys.get(at).map_or("", |key| key.get_ref().as_str());
             ["orbit", "pointing"].contains(&of(0))
                 || of(0) == "wheel" && ["axis", "inertia"].contains(&of(2))
-                || of(0) == "joint" && ["zero", "limits"].contains(&of(2))
+                || of(0) == "joint" && of(2) == "zero"
         })
     }
 }

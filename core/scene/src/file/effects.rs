@@ -4,6 +4,7 @@ use liestep::effects::{
     AirDrag, Dipole, Drag, Gravity, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque,
 };
 use liestep::mechanics::{Effect, Inertia};
+use liestep::methods::Multibody;
 use liestep_late::numbers;
 use serde::Deserialize;
 
@@ -18,6 +19,9 @@ use crate::file::quantity::{
 pub(crate) trait Table {
     /// The effect's parameters for a body of this inertia, at a time.
     fn numbers(&self, J: &Inertia, time: Time<'_>) -> Vec<f64>;
+
+    /// Adds the effect to one of several bodies, which has this inertia.
+    fn act_on(&self, J: &Inertia, system: &mut Multibody, body: usize);
 
     /// The parameter that varies along the orbit.
     fn on_orbit(&self) -> Option<&'static str>;
@@ -108,11 +112,20 @@ macro_rules! tables {
                 $(pub(crate) $field: $type),+
             }
 
-            impl Table for $table {
-                fn numbers(&self, $J: &Inertia, $t: Time<'_>) -> Vec<f64> {
+            impl $table {
+                fn effect(&self, $J: &Inertia, $t: Time<'_>) -> $effect {
                     let $parameters = self;
-                    let effect: $effect = $value;
-                    numbers(&effect)
+                    $value
+                }
+            }
+
+            impl Table for $table {
+                fn numbers(&self, J: &Inertia, time: Time<'_>) -> Vec<f64> {
+                    numbers(&self.effect(J, time))
+                }
+
+                fn act_on(&self, J: &Inertia, system: &mut Multibody, body: usize) {
+                    system.on(body, self.effect(J, Time { time: 0.0, orbit: None }));
                 }
 
                 fn on_orbit(&self) -> Option<&'static str> {

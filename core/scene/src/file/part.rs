@@ -1,6 +1,7 @@
 //! The parts of a system: its bodies, and what is between two of them.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use liestep::NonstandardInertia;
 use liestep::mechanics::Inertia;
@@ -9,6 +10,9 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::body::{AnyInertia, INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
+use crate::file::effects::{
+    DipoleTable, DragTable, EFFECTS, EffectEntry, MagneticDampingTable, RotorTable, Table, TorqueTable,
+};
 use crate::file::mistake::SpanMessage;
 use crate::file::quantity::{self, Density, Length, Mass, PositiveScalar, Speed, Triple};
 use crate::file::shape::{BoxTable, RoundTable, Shape, SphereTable};
@@ -28,7 +32,12 @@ pub(crate) struct SystemBody {
     pub(crate) position: Vector3<f64>,
     pub(crate) moving: Vector3<f64>,
     pub(crate) start: Start,
+    /// Effects of the library on the body.
+    pub(crate) effects: Vec<BodyEffect>,
 }
+
+/// An effect with its parameters.
+pub(crate) type BodyEffect = (&'static EffectEntry, Arc<dyn Table + Send + Sync>);
 
 /// A joint or a spring between two bodies, by their numbers; `None` is space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +67,17 @@ pub(crate) struct BodyTable {
     position: Option<Triple<Length>>,
     moving: Option<Triple<Speed>>,
     start: Option<Start>,
+    dipole: Option<DipoleTable>,
+    rotor: Option<RotorTable>,
+    drag: Option<DragTable>,
+    torque: Option<TorqueTable>,
+    magnetic_damping: Option<MagneticDampingTable>,
+}
+
+/// An effect of this key, if its table is given.
+fn effect<T: Table + Send + Sync + 'static>(key: &str, table: Option<T>) -> Option<BodyEffect> {
+    let entry = EFFECTS.iter().find(|entry| entry.key == key)?;
+    Some((entry, Arc::new(table?)))
 }
 
 /// Principal moments of a body, or the zeros of a point mass.
@@ -94,6 +114,27 @@ impl BodyTable {
         }
     }
 
+    /// The effects on the body, or why it can't have them.
+    fn effects(&self, J: Option<&Inertia>) -> Result<Vec<BodyEffect>, String> {
+        let all = [
+            effect("dipole", self.dipole),
+            effect("rotor", self.rotor),
+            effect("drag", self.drag),
+            effect("torque", self.torque),
+            effect("magnetic_damping", self.magnetic_damping),
+        ];
+        let all: Vec<BodyEffect> = all.into_iter().flatten().collect();
+        if let (Some((entry, _)), None) = (all.first(), J) {
+            return Err(format!("`{}` turns a body, and a point mass has no inertia: leave it out", entry.key));
+        }
+        match all.iter().find_map(|(entry, table)| Some((entry, table.on_orbit()?))) {
+            Some((entry, key)) => {
+                Err(format!("`{key}` of `{}` follows the orbit of one body: give three numbers", entry.key))
+            }
+            None => Ok(all),
+        }
+    }
+
     /// The mass, and the inertia of one that isn't a point mass.
     fn mass(&self, shape: Option<&Shape>) -> Result<(f64, Option<Inertia>), String> {
         let m = match (&self.m, &self.density, shape) {
@@ -117,12 +158,14 @@ impl BodyTable {
     pub(crate) fn body(self, span: Range<usize>) -> Result<(SystemBody, Range<usize>, bool), SpanMessage> {
         let shape = self.shape().map_err(|message| (span.clone(), message.to_owned()))?;
         let mass = self.mass(shape.as_ref());
+        let effects = mass.as_ref().map_or(Ok(Vec::new()), |(_, J)| self.effects(J.as_ref()));
         let Self { name, kinetic, position, moving, start, .. } = self;
         check_name("a body", name.get_ref()).map_err(|message| (name.span(), message))?;
         if name.get_ref() == SPACE {
             return Err((name.span(), "`space` is what bodies move in; give the body another name".to_owned()));
         }
-        let (m, J) = mass.map_err(|message| (span, message))?;
+        let (m, J) = mass.map_err(|message| (span.clone(), message))?;
+        let effects = effects.map_err(|message| (span, message))?;
         if let Some(kinetic) = kinetic.as_ref().filter(|kinetic| kinetic.get_ref().order() != 2) {
             let message =
                 "a body among several is `geodesic`, `rigid` or `cayley`: joints and springs are of second order";
@@ -145,7 +188,7 @@ impl BodyTable {
         let position = position.map_or_else(Vector3::zeros, |position| position.value);
         let start = start.unwrap_or(Start { attitude: UnitQuaternion::identity(), velocity: Vector3::zeros() });
         let place = name.span();
-        let body = SystemBody { name: name.into_inner(), m, J, shape, kinetic, position, moving, start };
+        let body = SystemBody { name: name.into_inner(), m, J, shape, kinetic, position, moving, start, effects };
         Ok((body, place, has_place))
     }
 }

@@ -42,21 +42,3 @@ impl Scene {
         Ok(scene)
     }
 }
-
-/// Reads a file, as [`Scene::read`].
-///
-/// # Errors
-///
-/// The first [`Mistake`] in it.
-pub fn read(path: impl AsRef<Path>) -> Result<Scene, Mistake> {
-    Scene::read(path)
-}
-
-/// Parses the scene of a text, as [`Scene::parse`].
-///
-/// # Errors
-///
-/// The first [`Mistake`] in it.
-pub fn parse(path: impl AsRef<Path>, text: &str) -> Result<Scene, Mistake> {
-    Scene::parse(path, text)
-}

@@ -13,6 +13,7 @@ use toml::de::Deserializer;
 
 use crate::file::column::{Column, Output};
 use crate::file::common::Parts;
+use crate::file::effects::EffectEntry;
 use crate::file::event::{Event, Quantity};
 use crate::file::joint::{Joint, JointTable, Limits, Names};
 use crate::file::mistake::{Lines, Mistake, SpanMessage, advised};
@@ -29,7 +30,7 @@ use crate::file::text::{check_name, title};
 /// | table | keys |
 /// |---|---|
 /// | | `title` |
-/// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame, where three zeros are those of a point mass; or a shape with its middle in the centre of mass, from which the inertia follows, with `m` or a `density`, kg/m³: a `box` by its edges, a `cylinder` or a `capsule` by the `radius` and the `length` of the cylinder and its `axis`, by default the third, a `sphere` by its `radius`, m; a shape beside an inertia is for the page alone; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile); without a position a body is placed by a joint with one that has a place |
+/// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame, where three zeros are those of a point mass; or a shape with its middle in the centre of mass, from which the inertia follows, with `m` or a `density`, kg/m³: a `box` by its edges, a `cylinder` or a `capsule` by the `radius` and the `length` of the cylinder and its `axis`, by default the third, a `sphere` by its `radius`, m; a shape beside an inertia is for the page alone; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile); without a position a body is placed by a joint with one that has a place; `dipole`, `rotor`, `drag`, `torque`, `magnetic_damping`, the effects that turn [one body](crate::SceneFile), with the same keys |
 /// | `gravity` | `g`, m/s²; `up`, in space |
 /// | `[[joint]]` | `name`, by which programs reach it, by default `joint-1` and so on; `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
 /// | | where the joint starts, of a body without a `position`: `angle` and `rate` about the axis, `shift`, m, and `speed`, m/s, along it, of the second body relative to the first, zero by default |
@@ -176,9 +177,24 @@ impl System {
         self.columns.iter().any(is_reaction) || places.into_iter().any(is_seen)
     }
 
-    /// The number of the first joint with friction, which has no step back.
-    pub(crate) fn joint_with_friction(&self) -> Option<usize> {
-        self.joints.iter().position(|joint| joint.of.terms.damping.is_some() || joint.of.terms.friction.is_some())
+    /// The effects on bodies, each with its body.
+    pub(crate) fn effects(&self) -> impl Iterator<Item = (&SystemBody, &'static EffectEntry)> {
+        self.bodies.iter().flat_map(|body| body.effects.iter().map(move |(entry, _)| (body, *entry)))
+    }
+
+    /// The reason why a step has none back that undoes it.
+    pub(crate) fn one_way(&self) -> Option<String> {
+        let has_friction =
+            |joint: &Between<Joint>| joint.of.terms.damping.is_some() || joint.of.terms.friction.is_some();
+        if let Some(joint) = self.joints.iter().position(has_friction) {
+            return Some(format!(
+                "a composition has steps back, in which friction adds energy, and `{}` has some: leave one of both out",
+                self.joint_names[joint]
+            ));
+        }
+        let (body, effect) = self.effects().find(|(_, effect)| effect.does_work())?;
+        let (effect, body) = (effect.name(" "), &body.name);
+        Some(format!("a composition needs a conservative scene; {effect} of `{body}` does work"))
     }
 
     /// Whether gaps of joints are cosines in part.
@@ -226,8 +242,12 @@ impl Parts for System {
         let bodies =
             if self.bodies.len() == 1 { Some("1 body".to_owned()) } else { counted(self.bodies.len(), "bodie") };
         let gravity = self.gravity.is_some().then(|| "gravity".to_owned());
-        let all = [bodies, gravity, counted(self.joints.len(), "joint"), counted(self.springs.len(), "spring")];
-        all.into_iter().flatten().collect::<Vec<_>>().join(" + ")
+        let mut effects: Vec<_> = self.effects().map(|(_, effect)| effect.name(" ")).collect();
+        effects.sort_unstable();
+        effects.dedup();
+        let parts = [counted(self.joints.len(), "joint"), counted(self.springs.len(), "spring")];
+        let all = [bodies, gravity].into_iter().chain(effects.into_iter().map(Some)).chain(parts);
+        all.flatten().collect::<Vec<_>>().join(" + ")
     }
 
     fn about(&self) -> String {
@@ -350,12 +370,7 @@ fn of_method(system: &System) -> Option<String> {
             let (name, base) = (composition.name(), composition.base());
             Some(format!("{name} composes a step of order {base}, and that of several bodies is of order 2"))
         }
-        Scheme::Composition(_) => system.joint_with_friction().map(|joint| {
-            format!(
-                "a composition has steps back, in which friction adds energy, and `{}` has some: leave one of both out",
-                system.joint_names[joint]
-            )
-        }),
+        Scheme::Composition(_) => system.one_way(),
         _ => Some("several bodies have their own step, or a `composition` of it".to_owned()),
     }
 }

@@ -105,10 +105,12 @@ impl System {
             let is = |kinetic| f64::from(u8::from(body.kinetic == kinetic));
             let [rigid, geodesic, cayley] = [Kinetic::Rigid, Kinetic::Geodesic, Kinetic::Cayley].map(is);
             let m = body.m;
-            match body.J {
-                Some(J) => system.body(HeavyBody { J, J_d: J.to_nonstandard(), rigid, geodesic, cayley, m, g, up }),
-                None => system.body(HeavyPoint { m, g, up }),
+            let Some(J) = body.J else {
+                system.body(HeavyPoint { m, g, up });
+                continue;
             };
+            let number = system.body(HeavyBody { J, J_d: J.to_nonstandard(), rigid, geodesic, cayley, m, g, up });
+            body.effects.iter().for_each(|(_, effect)| effect.act_on(&J, &mut system, number));
         }
         for &Between { bodies, of: Spring { k, length, at: [at_1, at_2] } } in &self.springs {
             if length == 0.0 {

@@ -194,6 +194,8 @@ impl System {
         let balls = if any(&|joint| joint.kind.has_one_point()) { BALLS } else { "" };
         let kinds = Kind::ALL.into_iter().filter(|kind| any(&|joint| joint.kind == *kind)).map(constraints);
         let kinds: String = kinds.collect();
-        format!("{}{gravity}{springs}{cords}{terms}{balls}{kinds}", HeavyBody::DERIVATION)
+        let used = EFFECTS.iter().filter(|one| self.effects().any(|(_, effect)| effect.key == one.key));
+        let effects: String = used.map(|effect| effect.derived.0).collect();
+        format!("{}{gravity}{effects}{springs}{cords}{terms}{balls}{kinds}", HeavyBody::DERIVATION)
     }
 }
