@@ -72,7 +72,7 @@ def sleigh() -> ls.Term:
 @pytest.mark.parametrize("method", [{}, {"composition": "Suzuki 4"}])
 @pytest.mark.parametrize("case", ["Suslov", "sleigh", "disk"])
 def test_gradients_are_those_of_the_constrained_motion(case: str, method: dict[str, str]) -> None:
-    """By the start, along what the constraints admit, and by all parameters, to 1e-7."""
+    """Derivatives by the start, along what the constraints admit, and by all parameters, to 1e-7."""
     attitude, fixed = None, ("a", "e", "height", "radius")
     if case == "Suslov":
         term, velocity, admitted = suslov(), np.array(START), np.eye(3)[:2]
