@@ -76,9 +76,9 @@ def gradients() -> dict[str, tuple[ls.Term, list[float]]]:
 
 
 def in_plain_runs(term: ls.Term, velocity: list[float], until: float = 100.0) -> float:
-    """The time of a gradient by that of a run, both of 10,000 steps and in turns."""
+    """The time of a gradient by that of a run, both of 10,000 steps and in turns; machine code comes after some of them."""
     stepper, times = term.stepper(0.01), []
-    for _ in range(10):
+    for _ in range(40):
         begun = time.perf_counter()
         run = stepper.run(velocity=velocity, until=until, every=10_000)
         between = time.perf_counter()
