@@ -193,11 +193,6 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
         return wrong(&["run", "duration"], message);
     }
     if let Pace::Accuracy(_) = file.run.pace {
-        if let Some(force) = file.first_force() {
-            let message =
-                format!("an accuracy can be asked for in conservative scenes; {force} does work, so give a `step`");
-            return wrong(&["run", "accuracy"], message);
-        }
         if has(document, "run", "method") {
             let message =
                 "an `accuracy`, which a run without a `step` has, chooses the method; give a `step` to choose it";
