@@ -234,11 +234,6 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
         return Some(odds);
     }
     if let Pace::Accuracy(_) = file.run.pace {
-        if let Some(force) = file.first_force() {
-            let message =
-                format!("an accuracy can be asked for in conservative scenes; {force} does work, so give a `step`");
-            return wrong(&["run", "accuracy"], message);
-        }
         if file.kinetic() != Kinetic::Rigid {
             let message = "an `accuracy`, which a run without a `step` has, chooses the method for the kinetic term \
                            `rigid`; leave `kinetic` out, or give a `step`";
