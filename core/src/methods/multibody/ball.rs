@@ -134,23 +134,6 @@ impl Ball {
     pub(super) fn squared_arm(&self) -> f64 {
         self.points.iter().map(Vector3::norm_squared).fold(0.0, f64::max)
     }
-
-    /// The momenta that these multipliers take from the body and from its parent.
-    pub(super) fn reactions(&self, multipliers: &Vector6<f64>) -> [Vector6<f64>; 2] {
-        let force = multipliers.fixed_rows::<3>(0) * self.sign;
-        let torque = |side: usize| {
-            let of = |turning: &Turning| matrix(&turning.before[side]) * multipliers.fixed_rows::<3>(3);
-            self.turning.as_deref().map_or_else(Vector3::zeros, of)
-        };
-        [0, 1].map(|side| {
-            let (force, mut reaction) = (if side == 0 { force } else { -force }, Vector6::zeros());
-            let [x, y, z] = self.before[side].map(|[x, y, z, _]| Vector3::new(x, y, z));
-            let moment = x * force.x + y * force.y + z * force.z;
-            reaction.fixed_rows_mut::<3>(0).copy_from(&(moment + torque(side)));
-            reaction.fixed_rows_mut::<3>(3).copy_from(&force);
-            reaction
-        })
-    }
 }
 
 #[hot]
@@ -257,6 +240,19 @@ impl Ball {
         *a21 = (loaded(zero, a21) + second).entries();
         *a12 = (loaded(zero, a12) + third).entries();
         *a22 = (loaded(zero, a22) + fourth).entries();
+    }
+
+    /// The momenta that these multipliers take from the body and from its parent.
+    pub(super) fn reactions<R: Register>(&self, zero: R, multipliers: &Vector6<f64>) -> [[R; 2]; 2] {
+        let force = turn_of(zero, multipliers) * zero.of([self.sign; 4]);
+        let mut turns = [loaded(zero, &self.before[0]).map(force), zero - loaded(zero, &self.before[1]).map(force)];
+        if let Some(turning) = &self.turning {
+            let multipliers = shift_of(zero, multipliers);
+            for side in 0..2 {
+                turns[side] = turns[side] + loaded(zero, &turning.before[side]).map(multipliers);
+            }
+        }
+        [[turns[0], force], [turns[1], zero - force]]
     }
 
     /// The pair `w` and `q` for the right-hand side `r` and this gap, the addition to the right-hand side of the parent, and the

@@ -13,6 +13,7 @@ use super::elimination::{factorise, solve};
 use super::ends::Ends;
 use super::graph::{Joint, Member, Neighbour, Tree};
 use super::nodes::{Loop, Node, Unknowns, set_blocks};
+use super::square::{shift_of, turn_of, write};
 use super::{parts, place_of};
 use crate::numbers::{OnRegisters, Register, on_registers};
 
@@ -105,6 +106,38 @@ impl OnRegisters for BallMatrices<'_> {
             }
         }
     }
+}
+
+/// The momenta that the multipliers of ball joints take.
+struct BallReactions<'a> {
+    tree: &'a Tree,
+    nodes: &'a [Node],
+    multipliers: &'a [Vector6<f64>],
+    reactions: &'a mut [Vector6<f64>],
+}
+
+impl OnRegisters for BallReactions<'_> {
+    type Output = ();
+
+    #[hot]
+    fn run<R: Register>(self, zero: R) {
+        let Self { tree, nodes, multipliers, reactions } = self;
+        for (k, node) in nodes.iter().enumerate() {
+            let Some(ball) = &node.ball else { continue };
+            let [own, of_parent] = ball.reactions(zero, &multipliers[k]);
+            add_pair(zero, &mut reactions[k], own);
+            if let Some(parent) = tree.members[k].parent {
+                add_pair(zero, &mut reactions[parent], of_parent);
+            }
+        }
+    }
+}
+
+/// Adds a turn and a shift.
+#[hot]
+fn add_pair<R: Register>(zero: R, to: &mut Vector6<f64>, [turn, shift]: [R; 2]) {
+    let sum = [turn_of(zero, to) + turn, shift_of(zero, to) + shift];
+    write(to, sum);
 }
 
 /// The slopes `T = S` of ball joints.
@@ -269,15 +302,13 @@ impl Equations {
     /// Writes the reactions `Σ Eᵀ p` of each body: the momentum that the multipliers take.
     pub(super) fn reactions(&self, tree: &Tree, reactions: &mut [Vector6<f64>]) {
         reactions.fill(Vector6::zeros());
+        on_registers(BallReactions { tree, nodes: &self.nodes, multipliers: &self.unknowns.joints, reactions });
         for (k, (node, member)) in self.nodes.iter().zip(&tree.members).enumerate() {
-            if member.joint.is_none() {
+            if member.joint.is_none() || node.ball.is_some() {
                 continue;
             }
             let multipliers = &self.unknowns.joints[k];
-            let [own, of_parent] = match &node.ball {
-                Some(ball) => ball.reactions(multipliers),
-                None => node.ends.each_ref().map(|ends| ends.momentum(multipliers)),
-            };
+            let [own, of_parent] = node.ends.each_ref().map(|ends| ends.momentum(multipliers));
             reactions[k] += own;
             if let Some(parent) = member.parent {
                 reactions[parent] += of_parent;
