@@ -31,7 +31,8 @@
 //!
 //! for all neighbours `m` and `n` of `c`. Between neighbours in a tree only their own blocks are filled.
 //!
-//! A body on a ball joint that no term couples has a `Ball`, in which blocks of three do all this.
+//! A body on a joint that holds a point, and that no term couples with a body which is eliminated later, has a `Ball`: blocks of
+//! three do all this.
 //!
 //! Matrices have room for six functions; the loops over those that a joint has are compiled for each number of them.
 

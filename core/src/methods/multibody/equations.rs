@@ -7,15 +7,15 @@ use nalgebra::{Matrix3, Matrix6, Vector2, Vector6};
 roots!();
 
 use super::ball::Ball;
+use super::balls::{BallMatrices, BallReactions, BallSlopes, BallVelocities};
 use super::constraint::Place;
 use super::couplings::Coefficients;
 use super::elimination::{factorise, solve};
 use super::ends::Ends;
 use super::graph::{Joint, Member, Neighbour, Tree};
 use super::nodes::{Loop, Node, Unknowns, set_blocks};
-use super::square::{shift_of, turn_of, write};
 use super::{parts, place_of};
-use crate::numbers::{OnRegisters, Register, on_registers};
+use crate::numbers::on_registers;
 
 /// The least pivot of a joint that closes a loop and isn't redundant, relative to that between free bodies. The
 /// rounding error of a zero is some `1e-14`. Near a singular configuration a pivot is quadratic in the distance to it,
@@ -56,104 +56,6 @@ impl Side {
         match self {
             Self::Before => &mut ends.before,
             Self::After => &mut ends.after,
-        }
-    }
-}
-
-/// The slopes of ball joints at these places: `S`, or `T` for unknowns that turn the bodies by these maps.
-struct BallSlopes<'a> {
-    tree: &'a Tree,
-    nodes: &'a mut [Node],
-    places: &'a [Place],
-    turns: Option<&'a [Matrix3<f64>]>,
-}
-
-impl OnRegisters for BallSlopes<'_> {
-    type Output = ();
-
-    #[hot]
-    fn run<R: Register>(self, zero: R) {
-        let Self { tree, nodes, places, turns } = self;
-        for (k, (node, member)) in nodes.iter_mut().zip(&tree.members).enumerate() {
-            let Some(ball) = &mut node.ball else { continue };
-            let own = &places[k].attitude;
-            match (turns, member.parent) {
-                (None, None) => ball.set_before(zero, own, None),
-                (None, Some(parent)) => ball.set_before(zero, own, Some(&places[parent].attitude)),
-                (Some(turns), None) => ball.set_after(zero, [own, &turns[k]], None),
-                (Some(turns), Some(parent)) => {
-                    ball.set_after(zero, [own, &turns[k]], Some([&places[parent].attitude, &turns[parent]]));
-                }
-            }
-        }
-    }
-}
-
-/// The matrices of bodies on ball joints.
-struct BallMatrices<'a> {
-    nodes: &'a mut [Node],
-    matrices: &'a [Matrix6<f64>],
-}
-
-impl OnRegisters for BallMatrices<'_> {
-    type Output = ();
-
-    #[hot]
-    fn run<R: Register>(self, zero: R) {
-        for (node, matrix) in self.nodes.iter_mut().zip(self.matrices) {
-            if let Some(ball) = &mut node.ball {
-                ball.set_matrix(zero, matrix);
-            }
-        }
-    }
-}
-
-/// The momenta that the multipliers of ball joints take.
-struct BallReactions<'a> {
-    tree: &'a Tree,
-    nodes: &'a [Node],
-    multipliers: &'a [Vector6<f64>],
-    reactions: &'a mut [Vector6<f64>],
-}
-
-impl OnRegisters for BallReactions<'_> {
-    type Output = ();
-
-    #[hot]
-    fn run<R: Register>(self, zero: R) {
-        let Self { tree, nodes, multipliers, reactions } = self;
-        for (k, node) in nodes.iter().enumerate() {
-            let Some(ball) = &node.ball else { continue };
-            let [own, of_parent] = ball.reactions(zero, &multipliers[k]);
-            add_pair(zero, &mut reactions[k], own);
-            if let Some(parent) = tree.members[k].parent {
-                add_pair(zero, &mut reactions[parent], of_parent);
-            }
-        }
-    }
-}
-
-/// Adds a turn and a shift.
-#[hot]
-fn add_pair<R: Register>(zero: R, to: &mut Vector6<f64>, [turn, shift]: [R; 2]) {
-    let sum = [turn_of(zero, to) + turn, shift_of(zero, to) + shift];
-    write(to, sum);
-}
-
-/// The slopes `T = S` of ball joints.
-struct BallVelocities<'a> {
-    nodes: &'a mut [Node],
-}
-
-impl OnRegisters for BallVelocities<'_> {
-    type Output = ();
-
-    #[hot]
-    fn run<R: Register>(self, zero: R) {
-        for node in self.nodes {
-            if let Some(ball) = &mut node.ball {
-                ball.set_velocities(zero);
-            }
         }
     }
 }
