@@ -80,11 +80,13 @@ impl Equations {
         let rows = |joint: Option<usize>| joint.map_or(0, |joint| joints[joint].rows);
         let all = [tree.members.len(), tree.loops.len()];
         let of_points = |member: &Member, neighbours: &[Neighbour]| {
-            let is_alone = !neighbours.iter().any(|neighbour| neighbour.is_coupled);
-            member.joint.and_then(|joint| joints[joint].of_points).filter(|_| is_alone)
+            let is_parent = |neighbour: &Neighbour| Some(neighbour.body) == member.parent;
+            let is_alone = neighbours.iter().all(|neighbour| is_parent(neighbour) || !neighbour.is_coupled);
+            member.joint.and_then(|joint| joints[joint].of_points).filter(|_| is_alone && neighbours.len() < 2)
         };
+        let is_coupled = |neighbours: &[Neighbour]| neighbours.iter().any(|neighbour| neighbour.is_coupled);
         let node = |(member, neighbours): (&Member, &Vec<_>)| Node {
-            ball: of_points(member, neighbours).map(|joint| Ball::new(joint, member.is_below)),
+            ball: of_points(member, neighbours).map(|joint| Ball::new(joint, member.is_below, is_coupled(neighbours))),
             ..Node::new(rows(member.joint), member.parent.is_some(), neighbours)
         };
         let is_like = |(one, (member, neighbours)): (&Node, (&Member, &Vec<_>))| {

@@ -20,9 +20,9 @@
 //! in the multipliers, so they need no initial guess from the last step. A Jacobian serves further updates while these shorten
 //! fast enough.
 //!
-//! A body on a ball, a pin, a universal joint or a weld, or a body above one towards the root of its tree, is eliminated in blocks of
-//! three, by the shift of the joint's point. A link in a chain takes 1.7 to 2.4 times the instructions of a link of a
-//! [`Chain`](crate::methods::Chain), which has half the unknowns and no momenta to project; its times are by `systems` of the benches.
+//! A body on a ball, a pin, a universal joint or a weld towards the root of its tree is eliminated in blocks of three. Such a
+//! link of a chain takes 1.7 to 2.4 times the instructions of one of a [`Chain`](crate::methods::Chain), which has half the unknowns
+//! and no momenta to project; the bench `systems` has both.
 
 mod ball;
 mod balls;
