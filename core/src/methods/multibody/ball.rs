@@ -328,8 +328,8 @@ impl Ball {
         let mut turns = [loaded(zero, &self.before[0]).map(force), zero - loaded(zero, &self.before[1]).map(force)];
         if let Some(turning) = &self.turning {
             let multipliers = shift_of(zero, multipliers);
-            for side in 0..2 {
-                turns[side] = turns[side] + loaded(zero, &turning.before[side]).map(multipliers);
+            for (turn, before) in turns.iter_mut().zip(&turning.before) {
+                *turn = *turn + loaded(zero, before).map(multipliers);
             }
         }
         [[turns[0], force], [turns[1], zero - force]]

@@ -68,14 +68,14 @@ impl Turning {
         [turn, turn_of_other]: [Columns<R>; 2],
     ) -> [Square; 2] {
         let (turn, turn_of_other) = (turn.transposed(), turn_of_other.transposed());
-        let mut slopes = [ZERO; 2];
-        for row in 0..self.rows {
-            let [u, v] = &self.directions[row];
+        let (mut of_own, mut of_other) = (ZERO, ZERO);
+        let both = of_own.iter_mut().zip(&mut of_other);
+        for ((of_own, of_other), [u, v]) in both.zip(&self.directions).take(self.rows) {
             let axis = cross(own.map(zero.of(padded(u))), other.map(zero.of(padded(v))));
-            slopes[0][row] = turn.map(axis).entries();
-            slopes[1][row] = (zero - turn_of_other.map(axis)).entries();
+            *of_own = turn.map(axis).entries();
+            *of_other = (zero - turn_of_other.map(axis)).entries();
         }
-        slopes
+        [of_own, of_other]
     }
 
     /// Factorises the multipliers' matrix from `B⁻¹`, `B⁻¹ K` and `B⁻¹ G`; returns `X P₁` and `X P₂`.
