@@ -98,7 +98,7 @@ fn braked() -> impl Regular<Scalar = f64, Group = SO3, Advected: Copy> + Clone {
     body() + gravity() + drag + Torque { torque } + damping + air + thrust
 }
 
-/// It is of second order, compared with a fine step.
+/// The own step of a body with all forces is of second order, compared with a fine step.
 #[test]
 fn forces_keep_the_order() {
     let at_one = |steps: u32| moved(braked(), 1.0 / f64::from(steps), steps.into()).momentum();
@@ -108,7 +108,7 @@ fn forces_keep_the_order() {
     assert!((coarse / fine - 4.0).abs() < 0.1, "{coarse:e} {fine:e}");
 }
 
-/// Compositions of it have their own orders, and a step of `−h` undoes one of `h`.
+/// Compositions of a step with forces have their own orders, and a step of `−h` undoes one of `h`.
 #[test]
 fn forces_are_composed() {
     let at_one = |scheme, steps: u32| {

@@ -62,7 +62,7 @@ def test_a_gradient_of_gravity_along_an_ellipse(method, order):
     assert np.log2(errors[1] / errors[2]) == pytest.approx(order, abs=0.03 * order)
 
 
-#: The same motion with a dipole, drag, and drag of air that turns with the orbit, by DOP853 to 1e-13.
+#: That motion with a dipole, drag, and drag of air that turns with the orbit, by DOP853 to 1e-13.
 BRAKED = [0.5674382877371827, 0.031661661190069364, 0.38965012826116413]
 
 

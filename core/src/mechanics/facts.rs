@@ -34,6 +34,7 @@ impl Parts {
 
 /// The facts about an effect that hold for all values of its parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools)] // each is a fact by itself
 pub struct Facts {
     /// The parts that aren't zero.
     pub parts: Parts,

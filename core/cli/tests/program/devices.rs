@@ -64,7 +64,7 @@ fn integrated() -> ([f64; 4], [f64; 3], [f64; 3]) {
     ([y[0], y[1], y[2], y[3]], [y[4], y[5], y[6]], speeds)
 }
 
-/// By the scene's own step and by a composition, whose stages have the wheels' momenta of their own times.
+/// Wheels have the order of the scene's own step, and of a composition, whose stages have the wheels' momenta of their own times.
 #[test]
 fn three_wheels_exchange_momentum_with_the_body() {
     let folder = folder("three_wheels_exchange_momentum_with_the_body");

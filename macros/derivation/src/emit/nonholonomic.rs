@@ -42,7 +42,7 @@ pub(super) fn implementation(
     let (describe, addition) = (emitter.describe(), header.addition());
     let of_term = emitter.term(&stages::same_generators(&emitter.code));
     let lanes = super::lanes::lanes(header, Some(&declaration.fields));
-    let is_self_adjoint = findings.self_adjointness.is_found();
+    let found = findings.self_adjointness.is_found();
     let zero = quote_spanned!(span=> <#vector as #private::Coordinates<#scalar>>::zero());
     let zeros = quote_spanned!(span=> <#vector as #private::Coordinates<#scalar>>::square(|_| #zero));
     let implementations = quote_spanned! {span=>
@@ -61,8 +61,7 @@ pub(super) fn implementation(
         #[allow(clippy::all, clippy::pedantic, clippy::nursery, non_snake_case, unused_variables)]
         #of_effect {
             #types
-            const FACTS: #private::Facts =
-                #private::Facts { is_self_adjoint: #is_self_adjoint, ..#private::Facts::OF_A_CONSTRAINT };
+            const FACTS: #private::Facts = #private::Facts { is_self_adjoint: #found, ..#private::Facts::OF_A_CONSTRAINT };
 
             #derivation
             #declared_text
