@@ -8,7 +8,7 @@
 use std::error::Error;
 
 use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiscreteLagrangian as _, Effect as _};
+use liestep::mechanics::Effect as _;
 use liestep::nalgebra::{Matrix2, RealField, SMatrix, Vector2};
 use liestep::{Stepper, lagrangian};
 

@@ -1,8 +1,8 @@
 """Times of this package: python measure.py [BESIDE], where that is the example `beside` of this package, built.
 
-Prints the steps a second of a loop in Python with a torque each, what an import takes, and gradients by start and all
-parameters in plain runs of as many steps; and with BESIDE the seconds of a
-million steps and of 100,000 members from Python, and in Rust, in turns, and their ratios.
+Prints the steps a second of processor time of a loop in Python with a torque each, what an import takes, and gradients by start and
+all parameters in plain runs of as many steps; and with BESIDE the seconds of a million steps and of 100,000 members from Python, and
+in Rust, in turns, and their ratios.
 """
 
 import subprocess
@@ -43,12 +43,12 @@ def members_in_rust() -> float:
 
 
 def loop(torque: Any, count: int = 200_000) -> float:
-    """Seconds of a step in a loop, with a torque each."""
+    """Seconds of processor time of a step in a loop, with a torque each."""
     state = TOP.stepper(0.01).start(velocity=[0.5, 2, 12])
-    begun = time.perf_counter()
+    begun = time.process_time()
     for _ in range(count):
         state.step(torque=torque)
-    return (time.perf_counter() - begun) / count
+    return (time.process_time() - begun) / count
 
 
 def imported() -> float:
@@ -76,9 +76,9 @@ def gradients() -> dict[str, tuple[ls.Term, list[float]]]:
 
 
 def in_plain_runs(term: ls.Term, velocity: list[float], until: float = 100.0) -> float:
-    """The time of a gradient by that of a run, both of 10,000 steps and in turns."""
+    """The time of a gradient by that of a run, both of 10,000 steps and in turns; machine code comes after some of them."""
     stepper, times = term.stepper(0.01), []
-    for _ in range(10):
+    for _ in range(40):
         begun = time.perf_counter()
         run = stepper.run(velocity=velocity, until=until, every=10_000)
         between = time.perf_counter()
@@ -89,7 +89,7 @@ def in_plain_runs(term: ls.Term, velocity: list[float], until: float = 100.0) ->
 
 
 for name, torque in (("a list", [1e-6, 0.0, -1e-6]), ("an array", np.array([1e-6, 0.0, -1e-6]))):
-    print(f"a loop: {1 / min(loop(torque) for _ in range(5)):.3g} steps a second, each with {name} as its torque")
+    print(f"a loop: {1 / min(loop(torque) for _ in range(5)):.3g} steps a second of processor time, each with {name} as its torque")
 print(f"an import: {1000 * imported():.0f} ms")
 for name, (term, velocity) in gradients().items():
     print(f"a gradient of {name}: {in_plain_runs(term, velocity):.2f} plain runs")

@@ -34,7 +34,7 @@ fn a_sub_riemannian_geodesic_has_its_closed_form() {
         let place = [(start[0] * sin + start[1] * (cos - 1.0)) / k, (start[0] * (1.0 - cos) + start[1] * sin) / k];
         [mu[0], mu[1], place[0], place[1]]
     };
-    for (method, order) in [("step", 2.0), ("composition Suzuki 4", 4.0)] {
+    for (method, order) in [("step", 2.0), ("composition Suzuki 4", 4.0), ("composition Suzuki 4, substeps 1", 4.0)] {
         let errors = [20_u32, 40, 80].map(|steps| {
             let stepper = of(GEODESIC, &[0.5], end / f64::from(steps), method);
             let mut state = stepper.start_with_momentum(&IDENTITY, &start).unwrap();

@@ -50,7 +50,7 @@ def test_starts(top, start):
 @pytest.mark.parametrize("course", [
     {"until": nan}, {"until": inf}, {"until": "long"}, {"until": 1, "every": 0}, {"until": 1, "every": -1},
     {"until": 1, "every": 2**70}, {"until": 1, "every": 1.5}, {"until": 1, "times": [nan]}, {"until": 1, "times": [[0.1]]},
-    {"until": 1, "times": [0.5, 0.1]}, {"until": 1, "events": {"a": "tilt >"}}, {"until": 1, "events": {"a": "colour > 1"}},
+    {"until": 1, "times": [0.5, 0.1]}, {"until": 1, "times": [0.5, 2]}, {"until": 1, "events": {"a": "tilt >"}}, {"until": 1, "events": {"a": "colour > 1"}},
     {"until": 1, "events": {"a": "tilt > 200 deg"}}, {"until": 1, "events": {"a": "tilt > -10 deg"}},
     {"until": 1, "events": {"a": 3}}, {"until": 1e12},
 ])

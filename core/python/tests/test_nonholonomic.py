@@ -72,7 +72,7 @@ def sleigh() -> ls.Term:
 @pytest.mark.parametrize("method", [{}, {"composition": "Suzuki 4"}])
 @pytest.mark.parametrize("case", ["Suslov", "sleigh", "disk"])
 def test_gradients_are_those_of_the_constrained_motion(case: str, method: dict[str, str]) -> None:
-    """By the start, along what the constraints admit, and by all parameters, to 1e-7."""
+    """Derivatives by the start, along what the constraints admit, and by all parameters, to 1e-7."""
     attitude, fixed = None, ("a", "e", "height", "radius")
     if case == "Suslov":
         term, velocity, admitted = suslov(), np.array(START), np.eye(3)[:2]
@@ -117,6 +117,29 @@ def test_gradients_are_those_of_the_constrained_motion(case: str, method: dict[s
         for k in range(3):
             expected = difference(lambda s, k=k: scalar(run(term, attitude=shift(s, k))))
             assert gradient.attitude[3 + k] == pytest.approx(expected, rel=1e-7, abs=1e-7)
+
+
+def test_an_estimate_of_a_constrained_motion() -> None:
+    """The same least squares as SciPy's, by differences of runs."""
+    optimize = pytest.importorskip("scipy.optimize", reason="SciPy isn't there")
+    body = lambda m: suslov() + ls.gravity(m=m, rho=[0.1, 0.2, 0.4])
+    run = body(1.3).stepper(0.02).run(velocity=START, until=2)
+    values = run.velocity + 1e-3 * np.random.default_rng(3).standard_normal(run.velocity.shape)
+
+    def missed(x):
+        return (np.ravel(body(x[0]).stepper(0.02).run(velocity=[x[1], x[2], 0], until=2).velocity - values)) / 1e-3
+
+    found = optimize.least_squares(missed, [1.2, *START[:2]], x_scale="jac", xtol=1e-12, ftol=1e-12)
+    given = {"step": 0.02, "readings": {"velocity": (values, 1e-3)}, "unknown": "m", "velocity": START}
+    fit = body(1.2).estimate(**given, known={"attitude": 1e-6})
+    assert fit.converged, fit.why
+    assert fit.parameters["m"] == pytest.approx(found.x[0], abs=1e-6)
+    assert fit.velocity == pytest.approx([*found.x[1:], 0], abs=1e-6)
+    assert fit.squares == pytest.approx(2 * found.cost, rel=1e-5)
+    # Nothing is seen of what the reaction takes up.
+    assert fit.verdict == "unseen" and np.allclose(np.abs(fit.direction), [0, 0, 0, 0, 0, 1, 0])
+    with pytest.raises(ls.SetupError, match="leave `momentum` out"):
+        body(1.2).estimate(**given, known={"momentum": 1.0})
 
 
 def test_mistakes_have_their_places() -> None:

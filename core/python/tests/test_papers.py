@@ -50,7 +50,7 @@ def by_runge_kutta(rates, now, steps=400):
     return now
 
 
-def free_motion(basis, kinetic, velocity, bias=0.0):
+def free_motion(basis, kinetic, velocity, bias=0.0, steps=400):
     """The velocity after a second by the Euler–Poincaré equations ``μ' = ad*_ξ μ``, ``μ = K ξ + b``."""
     basis = np.array(basis)
     dual = np.linalg.pinv(basis.reshape(len(basis), -1).T)
@@ -60,7 +60,7 @@ def free_motion(basis, kinetic, velocity, bias=0.0):
         hat = np.tensordot(inverse @ (mu - bias), basis, 1)
         return np.array([dual @ (hat @ e - e @ hat).ravel() for e in basis]) @ mu
 
-    return inverse @ (by_runge_kutta(rates, kinetic @ np.asarray(velocity, float) + bias) - bias)
+    return inverse @ (by_runge_kutta(rates, kinetic @ np.asarray(velocity, float) + bias, steps) - bias)
 
 
 def orders(term, velocity, exact, *, coarse=100, fine=16):
@@ -162,6 +162,29 @@ def test_geodesics_of_a_dense_metric(name, in_c):
     term = ls.lagrangian(name, velocity="xi", discretise="trapezoid(Cayley)", l="xi.dot(K * xi) / 2", K=K)
     orders(term, velocity, free_motion(basis, K, velocity))
     in_c(term, velocity, 0.01)
+
+
+def test_collocation_of_a_dense_metric():
+    """Collocation takes the continuous limit, on a group where no motion of a free body is known."""
+    K, velocity = metric(6), 0.9 * np.cos(np.arange(1.0, 7))
+    term = ls.lagrangian("SE3", velocity="xi", discretise="trapezoid(Cayley)", l="xi.dot(K * xi) / 2", K=K)
+    exact = free_motion(BASES["SE3"], K, velocity, steps=2000)
+    run = term.stepper(0.05, collocation=4).run(velocity=velocity, until=1)
+    assert np.linalg.norm(run.velocity[-1] - exact) < 1e-11
+
+
+def test_a_hamiltonian_has_compositions():
+    """A free body by its Hamiltonian: fourth order, the length of the momentum to rounding."""
+    body = ls.hamiltonian("SO3", h="mu.dot(K * mu) / 2", K=np.diag([1, 1 / 2, 1 / 2.5]))
+    exact = ls.body([1, 2, 2.5]).for_accuracy(1e-11, velocity=[0.3, 0.5, 0.4], until=2).momentum[-1]
+    runs = [body.stepper(2 / n, composition="Suzuki 4").run(momentum=[0.3, 1, 1], until=2).momentum for n in (20, 40)]
+    errors = [np.linalg.norm(run[-1] - exact) for run in runs]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.1)
+    assert abs(np.linalg.norm(runs[0], axis=1) - np.linalg.norm([0.3, 1, 1])).max() < 1e-14
+    with pytest.raises(ls.SetupError, match="composition of it"):
+        body.stepper(0.1, collocation=4)
+    with pytest.raises(ls.SetupError, match="give a `momentum`"):
+        body.stepper(0.1).run(velocity=[1, 0, 0], until=1)
 
 
 @pytest.mark.parametrize("thin", [1.0, 1e-6])

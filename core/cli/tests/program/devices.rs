@@ -242,6 +242,7 @@ fn mistakes_of_laws_and_wheels_have_their_place() {
     let wheel = |more: &str| format!("[[wheel]]\naxis = [0, 0, 1]\ninertia = 0.01\n{more}");
     for (device, message) in [
         (law("-kd * Omega", ""), "11:10: unknown name `kd`"),
+        (law("-2 * omega", ""), "did you mean `Omega`?"),
         (law("-2 * Omega[3]", ""), "the components of a vector are `v[0]`"),
         (law("Omega.dot(q)", ""), "a torque is a vector"),
         (law("Omega * q", ""), "the product of two vectors is"),

@@ -102,6 +102,7 @@ fn geodesics_on_products() {
         ("SE3", library::<SE3<f64>>(), "SO3", library::<SO3<f64>>()),
         ("SO3", library::<SO3<f64>>(), "SE2", library::<SE2<f64>>()),
     ];
+    let attitude = |name: &str| if name == "SO3" { "euler = [0, 0, 0], " } else { "" };
     for (first, A, second_name, B) in groups {
         let ([m, n], [K, M]) = ([A.len(), B.len()], [metric(A.len()), metric(B.len())]);
         let mut whole = blocks(&[&K, &M]);
@@ -110,10 +111,12 @@ fn geodesics_on_products() {
         let text = format!(
             "[lagrangian]\ngroup = {{ A = \"{first}\", B = \"{second_name}\" }}\nvelocity = [\"xi\", \"eta\"]\n\
              discretise = \"trapezoid(Cayley)\"\nl = \"xi.dot(K * xi) / 2 + eta.dot(M * eta) / 2 + c * xi[0] * eta[1]\"\n\
-             K = {}\nM = {}\nc = 0.3\n[start]\nA = {{ velocity = {:?} }}\nB = {{ velocity = {:?} }}\n",
+             K = {}\nM = {}\nc = 0.3\n[start]\nA = {{ {}velocity = {:?} }}\nB = {{ {}velocity = {:?} }}\n",
             written(&K),
             written(&M),
+            attitude(first),
             &xi[..m],
+            attitude(second_name),
             &xi[m..]
         );
         let [momentum, defect] = drifts(&second(&text, "", 100), m + n);

@@ -41,7 +41,7 @@ fn files_of_another_kind() {
     });
     expect![[r"
         error: empty.toml:1:1: missing field `title`
-        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `start`, `run`, `orbit`, `pointing`, `picture`, `event`, `output`, `lagrangian`, `force`, `nonholonomic`, `control`, `wheel`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `air_drag`, `torque`, `thrust`, `magnetic_damping`; did you mean `drag`?
+        error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `start`, `run`, `orbit`, `pointing`, `picture`, `event`, `output`, `lagrangian`, `hamiltonian`, `force`, `nonholonomic`, `control`, `wheel`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `air_drag`, `torque`, `thrust`, `magnetic_damping`; did you mean `drag`?
         error: bytes.toml:1:12: isn't a text in UTF-8
         error: nested.toml:1:89: cannot recurse further; max recursion depth met
         error: table.toml:1:1: missing field `name`

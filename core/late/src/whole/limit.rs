@@ -154,13 +154,29 @@ impl<B: Backend<f64>> Limit<'_, B> {
 
     /// The momentum with reactions, `μ − Aᵀ (A J⁻¹ Aᵀ)⁻¹ A ξ`, whose velocity satisfies the constraints on velocities.
     pub(super) fn constrained(&self, momentum: Vec<f64>, constants: &[f64]) -> Vec<f64> {
-        let Some([covectors, _]) = self.reactions(constants) else { return momentum };
-        let (velocity, inertia) = (self.velocity(&momentum), self.inertia());
+        let Some(covectors) = self.covectors(constants) else { return momentum };
+        let velocity = self.velocity(&momentum);
+        self.reacted(momentum, &velocity, &covectors)
+    }
+
+    /// A change of the momentum with reactions, so that the change of the velocity satisfies the constraints.
+    pub(super) fn constrained_change(&self, change: &[f64], constants: &[f64]) -> Vec<f64> {
+        let Some(covectors) = self.covectors(constants) else { return change.to_vec() };
+        let velocity = solution(&self.inertia(), change);
+        self.reacted(change.to_vec(), &velocity, &covectors)
+    }
+
+    fn covectors(&self, constants: &[f64]) -> Option<Vec<f64>> {
+        self.reactions(constants).map(|[covectors, _]| covectors)
+    }
+
+    fn reacted(&self, momentum: Vec<f64>, velocity: &[f64], covectors: &[f64]) -> Vec<f64> {
+        let inertia = self.inertia();
         let covectors: Vec<&[f64]> = covectors.chunks(velocity.len()).collect();
         let along: Vec<Vec<f64>> = covectors.iter().map(|covector| solution(&inertia, covector)).collect();
         let squares: Vec<f64> =
             covectors.iter().flat_map(|covector| along.iter().map(|along| dot(covector, along))).collect();
-        let rates: Vec<f64> = covectors.iter().map(|covector| dot(covector, &velocity)).collect();
+        let rates: Vec<f64> = covectors.iter().map(|covector| dot(covector, velocity)).collect();
         let impulses = solution(&squares, &rates);
         covectors.iter().zip(impulses).fold(momentum, |momentum, (covector, impulse)| {
             momentum.iter().zip(*covector).map(|(momentum, entry)| momentum - impulse * entry).collect()

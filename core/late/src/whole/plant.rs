@@ -82,9 +82,14 @@ impl<B: Backend<f64>> Plant for Whole<B> {
         let layout = self.layout();
         let (xi, change) = change.split_at_checked(self.codes.sizes.n)?;
         let attitude = displaced(&self.codes.factors, state.get(layout.attitude())?, xi);
-        let momentum = state.get(layout.momentum())?.iter().zip(change).map(|(momentum, change)| momentum + change);
-        let advected = self.codes.seen(&self.numbers, &attitude);
-        let momentum = self.numbered().limit(&advected).constrained(momentum.collect(), &self.stages.first().numbers);
+        let (momentum, constants) = (state.get(layout.momentum())?, &self.stages.first().numbers);
+        // A change that reactions take up leaves every bit of a momentum, so that readings say exactly nothing about it.
+        let change = self.numbered().limit(state.get(layout.advected())?).constrained_change(change, constants);
+        let mut momentum: Vec<f64> = momentum.iter().zip(change).map(|(momentum, change)| momentum + change).collect();
+        if xi.iter().any(|component| *component != 0.0) {
+            let advected = self.codes.seen(&self.numbers, &attitude);
+            momentum = self.numbered().limit(&advected).constrained(momentum, constants);
+        }
         self.start_with_momentum(&attitude, &momentum).ok()
     }
 

@@ -231,11 +231,14 @@ def estimate(
     n = term._terms()[0][0].dimension
     information = np.zeros(2 * n + len(unknowns))
     at = {"attitude": range(n), "momentum": range(n, 2 * n)}
-    first = 2 * n
+    place = 2 * n
     for name, _, own in places:
-        at[name] = range(first, first + len(own))
-        first += len(own)
+        at[name] = range(place, place + len(own))
+        place += len(own)
+    is_constrained = any(summand.derived().role == "nonholonomic" for summand in term.summands)
     for name, deviation in (known or {}).items():
+        if name == "momentum" and is_constrained:
+            raise SetupError("beside constraints on velocities what is `known` is about the attitude and parameters: leave `momentum` out")
         if name not in at:
             raise SetupError(f"what is known is about {', '.join(at)}, not `{name}`")
         if not number(name, deviation) > 0:

@@ -52,7 +52,6 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     file.run.count(document).map_err(located)?;
     (file.lagrangian, file.hamiltonian, file.force, file.nonholonomic) = (lagrangian, hamiltonian, force, nonholonomic);
     file.over_time = over_time.into();
-    beside(document, &file).map_or(Ok(()), Err).map_err(located)?;
     add(document, &mut file).and_then(|()| fixed(&file).map_or(Ok(()), Err)).map_err(located)?;
     if let Some(start) = document.get_ref().get("start") {
         file.start = Beginning::read(start, &file.group, file.orbit.as_ref()).map_err(located)?;
@@ -91,10 +90,8 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let at = |keys: &[&str]| place_of(text, &span(document, keys));
     let keys = ["accuracy", "steps_per_orbit"];
     let pace = keys.into_iter().find(|key| has(document, "run", key)).unwrap_or("step");
-    let energies = [("body", file.body.is_some()), ("hamiltonian", !file.hamiltonian.is_empty())];
-    let body = energies.into_iter().find(|(_, is_there)| *is_there).map_or("lagrangian", |(key, _)| key);
     let places = Places {
-        body: at(&[body]),
+        body: at(&[moving(&file)]),
         start: at(&["start"]),
         attitude: at(&["start", "attitude"]),
         pace: at(&["run", pace]),
@@ -120,6 +117,15 @@ fn per_orbit(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMe
     let steps = equal_steps(step, file.run.duration).map_err(|message| wrong(&message))?;
     file.run.pace = Pace::Step { step, steps };
     Ok(())
+}
+
+/// The table of what moves.
+fn moving(file: &SceneFile) -> &'static str {
+    match file.body {
+        Some(_) => "body",
+        None if file.hamiltonian.is_empty() => "lagrangian",
+        None => "hamiltonian",
+    }
 }
 
 /// Conflicts with a Hamiltonian, which has all terms in its text, and steps of its own.
@@ -152,6 +158,9 @@ fn beside(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
 
 /// Adds the terms of a file with a Lagrangian that has the kinetic energy, and finds the group.
 fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage> {
+    if let Some(mistake) = beside(document, file) {
+        return Err(mistake);
+    }
     let own = || file.own();
     let of_term = |place: &Range<usize>, error: LateError| (place.clone(), in_files(&error.to_string()));
     let is_of_body = |one: &DeclaredTerm| one.declaration.group() == "SO3";
@@ -225,11 +234,6 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
         return Some(odds);
     }
     if let Pace::Accuracy(_) = file.run.pace {
-        if let Some(force) = file.first_force() {
-            let message =
-                format!("an accuracy can be asked for in conservative scenes; {force} does work, so give a `step`");
-            return wrong(&["run", "accuracy"], message);
-        }
         if file.kinetic() != Kinetic::Rigid {
             let message = "an `accuracy`, which a run without a `step` has, chooses the method for the kinetic term \
                            `rigid`; leave `kinetic` out, or give a `step`";

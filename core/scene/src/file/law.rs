@@ -1,5 +1,6 @@
 //! Laws as texts: expressions of numbers and vectors in the words of declarations, computed at times of a run.
 
+use liestep_derivation::suggestion;
 use nalgebra::Vector3;
 
 /// A number or a vector.
@@ -384,7 +385,8 @@ impl Parser<'_> {
                 let found = self.names.iter().position(|(own, _)| *own == name);
                 found.map(Node::Name).ok_or_else(|| {
                     let known: Vec<_> = self.names.iter().map(|(name, _)| format!("`{name}`")).collect();
-                    format!("unknown name `{name}`: a law has {}, and the keys of its table", known.join(", "))
+                    let near = suggestion(&name, self.names.iter().map(|(name, _)| name.as_str()));
+                    format!("unknown name `{name}`: a law has {}, and the keys of its table{near}", known.join(", "))
                 })
             }
             Some(Token::Sign(sign)) => Err(format!("`{sign}` isn't expected here")),

@@ -88,7 +88,7 @@ impl Mistake {
 }
 
 /// Words of other programs, each with the name that it stands for here, and advice for where that name is expected.
-const OTHER_WORDS: [(&str, &str, &str); 22] = [
+const OTHER_WORDS: [(&str, &str, &str); 23] = [
     ("hinge", "pin", "a hinge is a `pin`"),
     ("revolute", "pin", "a revolute joint is a `pin`"),
     ("spherical", "ball", "a spherical joint is a `ball`"),
@@ -108,12 +108,19 @@ const OTHER_WORDS: [(&str, &str, &str); 22] = [
     ("omega", "velocity", "the angular velocity is `velocity`, in the body"),
     ("matrix", "attitude", "the matrix of an attitude is `attitude`"),
     ("dcm", "attitude", "the matrix of an attitude is `attitude`, body to space"),
+    ("earth", "nadir", "the direction of the planet is \"nadir\""),
     ("frame", "relative_to", "a start is `relative_to` the \"local vertical\""),
     ("mass", "m", "the mass is `m`"),
     ("inertia", "J", "a tensor of inertia is `J`, principal moments are `moments`"),
 ];
 
-/// A message of the reader with a suggestion for an unknown name.
+/// Keys that are often forgotten, and what they say.
+const FORGOTTEN: [(&str, &str); 2] = [
+    ("direction", "along an orbit write `direction = \"nadir\"`"),
+    ("between", "a value holds until the next time by `between = \"steps\"`, and values are joined by `\"lines\"`"),
+];
+
+/// A message of the reader with a suggestion for an unknown name or a forgotten key.
 pub(crate) fn advised(message: &str) -> String {
     // `unknown field `x`, expected one of `y`, `z``
     let mut names = message.split('`').skip(1).step_by(2);
@@ -123,6 +130,10 @@ pub(crate) fn advised(message: &str) -> String {
             let other = OTHER_WORDS.iter().find(|(word, name, _)| unknown == *word && names.contains(name));
             let advice = other.map(|(_, _, advice)| format!("; {advice}"));
             format!("{message}{}", advice.unwrap_or_else(|| suggestion(unknown, names.into_iter())))
+        }
+        Some(key) if message.starts_with("missing field ") => {
+            let advice = FORGOTTEN.iter().find(|(forgotten, _)| *forgotten == key);
+            advice.map_or_else(|| message.to_owned(), |(_, advice)| format!("{message}; {advice}"))
         }
         _ if message.contains("expected `nan`") => {
             "isn't a value: a number, a text in quotation marks, a list in brackets; what isn't there is left out"

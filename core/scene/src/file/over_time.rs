@@ -195,7 +195,12 @@ fn of_csv(text: &str, time: &str, columns: &[String]) -> Result<(Vec<f64>, Vec<f
     let names: Vec<&str> = head.split(',').map(|name| name.trim().trim_matches('"')).collect();
     let place = |name: &str| {
         let found = names.iter().position(|own| *own == name);
-        found.ok_or_else(|| format!("there is no column `{name}`, but {}", names.join(", ")))
+        let advice = if name == "t" && columns.iter().all(|column| column != name) {
+            "; name the one of the times, as `time = \"seconds\"`"
+        } else {
+            ""
+        };
+        found.ok_or_else(|| format!("there is no column `{name}`, but {}{advice}", names.join(", ")))
     };
     if columns.is_empty() {
         return Err("name its `columns`, as `columns = [\"x\", \"y\", \"z\"]`".to_owned());

@@ -17,6 +17,15 @@
 //! A_b ← A_b + (S_b I)ᵀ Π (T_b I)                r_b ← r_b + (S_b I)ᵀ q
 //! ```
 //!
+//! A term that couples the body with its parent adds `L y_b` to the equations of the body and `M y` to those of the parent. With
+//! `x_b = ξ − T_b z_b` these are parts of `G`, of the mass, and of products with `z_b`:
+//!
+//! ```text
+//! K = L₁₁ − L₁₂ T_b − Sᵀ L₂       L₂ = L₂₁ − L₂₂ T_b       G ← G + L₁₂ − Sᵀ L₂₂       A₂₂ ← A₂₂ + L₂₂ in Π
+//! z = −w − B⁻¹ G ξ − U z_b        P = −q − Π ξ + V z_b     U = B⁻¹ K                  V = H U − L₂
+//! N = M_z − M_x T                 M y = −N w − M_x g + (M_x − N B⁻¹ G) ξ − N U z_b
+//! ```
+//!
 //! Functions of attitudes beyond these three, as those of a pin, are a [`Turning`].
 //!
 //! This is the elimination of [`Chain`](crate::methods::Chain), for bodies with unknowns of their own.
@@ -51,8 +60,44 @@ pub(super) struct Ball {
     g: Square,
     h: Square,
     beyond: Square,
+    /// The products `U` and `V`, with a coupling or further functions.
+    by_turn: [Square; 2],
+    /// The term between the body and its parent.
+    coupling: Option<Box<Coupling>>,
     /// The joint's further functions.
     pub(super) turning: Option<Box<Turning>>,
+}
+
+/// The factors of a term that couples the body with its parent.
+#[derive(Clone)]
+struct Coupling {
+    /// The matrices `N` and `M_x`, the rows of turns and of shifts.
+    n: [Square; 2],
+    m: [Square; 2],
+    /// The part of the matrix of the parent, as blocks in the order of its own.
+    of_parent: [Square; 4],
+}
+
+/// The blocks of a matrix of a body.
+#[hot]
+fn blocks<R: Register>(zero: R, m: &Matrix6<f64>) -> [Columns<R>; 4] {
+    let [a, b, c, d, e, f] = &m.data.0;
+    [
+        Columns([top(zero, a), top(zero, b), top(zero, c)]),
+        Columns([bottom(zero, a), bottom(zero, b), bottom(zero, c)]),
+        Columns([top(zero, d), top(zero, e), top(zero, f)]),
+        Columns([bottom(zero, d), bottom(zero, e), bottom(zero, f)]),
+    ]
+}
+
+#[hot]
+fn top<R: Register>(zero: R, [x, y, z, u, ..]: &[f64; 6]) -> R {
+    zero.of([*x, *y, *z, *u])
+}
+
+#[hot]
+fn bottom<R: Register>(zero: R, [.., z, u, v, w]: &[f64; 6]) -> R {
+    zero.of([*u, *v, *w, *z])
 }
 
 /// Adds blocks to the matrix of a body without a ball joint.
@@ -90,13 +135,16 @@ fn slope<R: Register>(turn: Columns<R>, arm: R) -> Square {
 
 impl Ball {
     /// A joint towards the root, of which the body is the one below or the one above.
-    pub(super) fn new(joint: PointJoint, is_below: bool) -> Self {
+    pub(super) fn new(joint: PointJoint, is_below: bool, is_coupled: bool) -> Self {
         let sides = |[above, below]: [Vector3<f64>; 2]| if is_below { [below, above] } else { [above, below] };
         let (own, before, after) = ([ZERO; 4], [ZERO; 2], [ZERO; 2]);
         let (inverse, z, g, h, beyond) = (ZERO, ZERO, ZERO, ZERO, ZERO);
         let (sign, points) = (if is_below { 1.0 } else { -1.0 }, sides(joint.points));
         let turning = (joint.count > 0).then(|| Box::new(Turning::new(joint.cosines.map(sides), joint.count)));
-        Self { joint, sign, points, own, before, after, inverse, z, g, h, beyond, turning }
+        let coupling = Coupling { n: [ZERO; 2], m: [ZERO; 2], of_parent: [ZERO; 4] };
+        let coupling = is_coupled.then(|| Box::new(coupling));
+        let by_turn = [ZERO; 2];
+        Self { joint, sign, points, own, before, after, inverse, z, g, h, beyond, by_turn, coupling, turning }
     }
 
     /// Whether these are the equations of such a joint.
@@ -134,22 +182,23 @@ impl Ball {
     pub(super) fn squared_arm(&self) -> f64 {
         self.points.iter().map(Vector3::norm_squared).fold(0.0, f64::max)
     }
+}
 
-    /// The momenta that these multipliers take from the body and from its parent.
-    pub(super) fn reactions(&self, multipliers: &Vector6<f64>) -> [Vector6<f64>; 2] {
-        let force = multipliers.fixed_rows::<3>(0) * self.sign;
-        let torque = |side: usize| {
-            let of = |turning: &Turning| matrix(&turning.before[side]) * multipliers.fixed_rows::<3>(3);
-            self.turning.as_deref().map_or_else(Vector3::zeros, of)
-        };
-        [0, 1].map(|side| {
-            let (force, mut reaction) = (if side == 0 { force } else { -force }, Vector6::zeros());
-            let [x, y, z] = self.before[side].map(|[x, y, z, _]| Vector3::new(x, y, z));
-            let moment = x * force.x + y * force.y + z * force.z;
-            reaction.fixed_rows_mut::<3>(0).copy_from(&(moment + torque(side)));
-            reaction.fixed_rows_mut::<3>(3).copy_from(&force);
-            reaction
-        })
+#[hot]
+impl Coupling {
+    /// Sets the factors by `M`, `T` and `T_b`, `B⁻¹ G` and `U`.
+    fn set<R: Register>(
+        &mut self,
+        [m11, m21, m12, m22]: [Columns<R>; 4],
+        [t, t_parent]: [Columns<R>; 2],
+        [z, u]: [Columns<R>; 2],
+    ) {
+        let (first, second) = (m11 - m12 * t, m21 - m22 * t);
+        let (by_point, of_shift) = (m12 - first * z, m22 - second * z);
+        let (by_turn, of_turn) = (by_point * t_parent - first * u, of_shift * t_parent - second * u);
+        self.n = [first.entries(), second.entries()];
+        self.m = [m12.entries(), m22.entries()];
+        self.of_parent = [by_turn.entries(), of_turn.entries(), by_point.entries(), of_shift.entries()];
     }
 }
 
@@ -157,14 +206,8 @@ impl Ball {
 impl Ball {
     /// Sets the body's matrix.
     pub(super) fn set_matrix<R: Register>(&mut self, zero: R, m: &Matrix6<f64>) {
-        let columns = &m.data.0;
-        for k in 0..3 {
-            let ([x, y, z, u, v, w], [a, b, c, d, e, f]) = (columns[k], columns[k + 3]);
-            self.own[0][k] = zero.of([x, y, z, u]).entries();
-            self.own[1][k] = zero.of([u, v, w, z]).entries();
-            self.own[2][k] = zero.of([a, b, c, d]).entries();
-            self.own[3][k] = zero.of([d, e, f, c]).entries();
-        }
+        let [a11, a21, a12, a22] = blocks(zero, m);
+        self.own = [a11.entries(), a21.entries(), a12.entries(), a22.entries()];
     }
 
     /// Sets `S` at these attitudes of the body, and of its parent if there is one.
@@ -210,8 +253,9 @@ impl Ball {
         }
     }
 
-    /// Eliminates the body. Returns the determinant of `B` relative to its diagonal.
-    pub(super) fn factorise<R: Register>(&mut self, zero: R) -> f64 {
+    /// Eliminates the body, with these blocks `L` and `M` if it is coupled with its parent. Returns the determinant of `B` relative
+    /// to its diagonal.
+    pub(super) fn factorise<R: Register>(&mut self, zero: R, coupled: Option<[&Matrix6<f64>; 2]>) -> f64 {
         let [a11, a21, a12, a22] = &self.own;
         let (a11, a21, a12, a22) = (loaded(zero, a11), loaded(zero, a21), loaded(zero, a12), loaded(zero, a22));
         let (s, t) = (loaded(zero, &self.before[0]), loaded(zero, &self.after[0]));
@@ -222,13 +266,25 @@ impl Ball {
         let rows = [cross(y, z), cross(z, x), cross(x, y)];
         let determinant = dot(x, rows[0]);
         let inverse = Columns(rows).transposed().scaled(zero.of([1.0; 4]) / determinant);
-        let mut z = inverse * g;
-        if let Some(turning) = &mut self.turning {
-            let [by_turn, by_point] = turning.factorise(zero, inverse, z);
-            z = z + by_point;
-            turning.force = (h * by_turn).entries();
+        let (mut u, mut v, mut of_point, mut mass) = (Columns([zero; 3]), Columns([zero; 3]), g, a22);
+        if let Some([own, _]) = coupled {
+            let ([l11, l21, l12, l22], parent) = (blocks(zero, own), loaded(zero, &self.after[1]));
+            v = l21 - l22 * parent;
+            u = inverse * (l11 - l12 * parent - s * v);
+            (of_point, mass) = (g + l12 - s * l22, a22 + l22);
         }
-        self.beyond = (a22 - h * z).entries();
+        let mut z = inverse * of_point;
+        if let Some(turning) = &mut self.turning {
+            let [by_turn, by_point] = turning.factorise(zero, inverse, [u, z]);
+            (u, z) = (u + by_turn, z + by_point);
+        }
+        if coupled.is_some() || self.turning.is_some() {
+            self.by_turn = [u.entries(), (h * u - v).entries()];
+        }
+        if let (Some([_, other]), Some(coupling)) = (coupled, &mut self.coupling) {
+            coupling.set(blocks(zero, other), [t, loaded(zero, &self.after[1])], [z, u]);
+        }
+        self.beyond = (mass - h * z).entries();
         (self.inverse, self.z, self.g, self.h) = (inverse.entries(), z.entries(), g.entries(), h.entries());
         let [[b11, ..], [_, b22, ..], [_, _, b33, _]] = b.entries();
         determinant.entries()[0] / (b11 * b22 * b33).abs()
@@ -239,15 +295,22 @@ impl Ball {
         let beyond = loaded(zero, &self.beyond);
         let (s, t) = (loaded(zero, &self.before[1]), loaded(zero, &self.after[1]));
         let mut turned = beyond * t;
-        let mut of_turn = s * beyond;
-        let Some(turning) = &self.turning else {
-            return [s * turned, turned, of_turn, beyond];
-        };
-        turned = turned - loaded(zero, &turning.force);
-        let [by_turn, by_point] = &turning.of_parent;
-        let (by_turn, by_point) = (loaded(zero, by_turn), loaded(zero, by_point));
-        of_turn = of_turn + by_point;
-        [s * turned + (by_turn + by_point * t), turned, of_turn, beyond]
+        if self.turning.is_some() || self.coupling.is_some() {
+            turned = turned - loaded(zero, &self.by_turn[1]);
+        }
+        let mut all = [s * turned, turned, s * beyond, beyond];
+        if let Some(turning) = &self.turning {
+            let [by_turn, by_point] = &turning.of_parent;
+            let (by_turn, by_point) = (loaded(zero, by_turn), loaded(zero, by_point));
+            all[0] = all[0] + (by_turn + by_point * t);
+            all[2] = all[2] + by_point;
+        }
+        if let Some(coupling) = &self.coupling {
+            for (sum, part) in all.iter_mut().zip(&coupling.of_parent) {
+                *sum = *sum + loaded(zero, part);
+            }
+        }
+        all
     }
 
     /// Adds to the blocks of the body's matrix.
@@ -257,6 +320,19 @@ impl Ball {
         *a21 = (loaded(zero, a21) + second).entries();
         *a12 = (loaded(zero, a12) + third).entries();
         *a22 = (loaded(zero, a22) + fourth).entries();
+    }
+
+    /// The momenta that these multipliers take from the body and from its parent.
+    pub(super) fn reactions<R: Register>(&self, zero: R, multipliers: &Vector6<f64>) -> [[R; 2]; 2] {
+        let force = turn_of(zero, multipliers) * zero.of([self.sign; 4]);
+        let mut turns = [loaded(zero, &self.before[0]).map(force), zero - loaded(zero, &self.before[1]).map(force)];
+        if let Some(turning) = &self.turning {
+            let multipliers = shift_of(zero, multipliers);
+            for (turn, before) in turns.iter_mut().zip(&turning.before) {
+                *turn = *turn + loaded(zero, before).map(multipliers);
+            }
+        }
+        [[turns[0], force], [turns[1], zero - force]]
     }
 
     /// The pair `w` and `q` for the right-hand side `r` and this gap, the addition to the right-hand side of the parent, and the
@@ -278,9 +354,15 @@ impl Ball {
             gap.as_mut_slice()[3..].copy_from_slice(&s.entries()[..3]);
         }
         let q = r2 - loaded(zero, &self.own[3]).map(gamma) - loaded(zero, &self.h).map(w);
+        let mut added = [loaded(zero, &self.before[1]).map(q) + torque, q];
+        if let Some(Coupling { n, m, .. }) = self.coupling.as_deref() {
+            for side in 0..2 {
+                added[side] = added[side] - loaded(zero, &n[side]).map(w) - loaded(zero, &m[side]).map(gamma);
+            }
+        }
         let opposed = square(taken);
         let size = Vector2::new(2.0 * opposed, self.points[0].norm_squared() * opposed);
-        ([w, q], [loaded(zero, &self.before[1]).map(q) + torque, q], size)
+        ([w, q], added, size)
     }
 
     /// The unknowns of the body by those of its parent; replaces the gap by the multipliers.
@@ -299,10 +381,13 @@ impl Ball {
         }
         let mut z = zero - w - loaded(zero, &self.z).map(point);
         let mut force = q + loaded(zero, &self.beyond).map(point);
+        if self.turning.is_some() || self.coupling.is_some() {
+            let [u, v] = &self.by_turn;
+            z = z - loaded(zero, u).map(turn);
+            force = force - loaded(zero, v).map(turn);
+        }
         if let Some(turning) = &self.turning {
-            let [multipliers, turned] = turning.completed(zero, shift_of(zero, gap), turn, point);
-            z = z - turned;
-            force = force - loaded(zero, &turning.force).map(turn);
+            let multipliers = turning.completed(zero, shift_of(zero, gap), turn, point);
             gap.as_mut_slice()[3..].copy_from_slice(&multipliers.entries()[..3]);
         }
         let x = point - gamma - loaded(zero, &self.after[0]).map(z);

@@ -31,7 +31,8 @@
 //!
 //! for all neighbours `m` and `n` of `c`. Between neighbours in a tree only their own blocks are filled.
 //!
-//! A body on a ball joint that no term couples has a `Ball`, in which blocks of three do all this.
+//! A body on a joint that holds a point, and that no term couples with a later body but its parent, has a `Ball`: blocks of three do
+//! all this.
 //!
 //! Matrices have room for six functions; the loops over those that a joint has are compiled for each number of them.
 
@@ -90,7 +91,13 @@ impl OnRegisters for Factorisation<'_> {
                 eliminate(nodes, k);
                 continue;
             };
-            node.determinant = ball.factorise(zero);
+            let mut coupled = None;
+            if let Some(block) = node.blocks.first()
+                && block.neighbour.is_coupled
+            {
+                coupled = Some([&block.own, &block.other]);
+            }
+            node.determinant = ball.factorise(zero, coupled);
             if let Some(turning) = &ball.turning {
                 (node.pivot, node.of_joint) = (turning.pivot, turning.determinant);
             }

@@ -7,6 +7,7 @@ use nalgebra::{Matrix3, Matrix6, Vector2, Vector6};
 roots!();
 
 use super::ball::Ball;
+use super::balls::{BallMatrices, BallReactions, BallSlopes, BallVelocities};
 use super::constraint::Place;
 use super::couplings::Coefficients;
 use super::elimination::{factorise, solve};
@@ -14,7 +15,7 @@ use super::ends::Ends;
 use super::graph::{Joint, Member, Neighbour, Tree};
 use super::nodes::{Loop, Node, Unknowns, set_blocks};
 use super::{parts, place_of};
-use crate::numbers::{OnRegisters, Register, on_registers};
+use crate::numbers::on_registers;
 
 /// The least pivot of a joint that closes a loop and isn't redundant, relative to that between free bodies. The
 /// rounding error of a zero is some `1e-14`. Near a singular configuration a pivot is quadratic in the distance to it,
@@ -59,72 +60,6 @@ impl Side {
     }
 }
 
-/// The slopes of ball joints at these places: `S`, or `T` for unknowns that turn the bodies by these maps.
-struct BallSlopes<'a> {
-    tree: &'a Tree,
-    nodes: &'a mut [Node],
-    places: &'a [Place],
-    turns: Option<&'a [Matrix3<f64>]>,
-}
-
-impl OnRegisters for BallSlopes<'_> {
-    type Output = ();
-
-    #[hot]
-    fn run<R: Register>(self, zero: R) {
-        let Self { tree, nodes, places, turns } = self;
-        for (k, (node, member)) in nodes.iter_mut().zip(&tree.members).enumerate() {
-            let Some(ball) = &mut node.ball else { continue };
-            let own = &places[k].attitude;
-            match (turns, member.parent) {
-                (None, None) => ball.set_before(zero, own, None),
-                (None, Some(parent)) => ball.set_before(zero, own, Some(&places[parent].attitude)),
-                (Some(turns), None) => ball.set_after(zero, [own, &turns[k]], None),
-                (Some(turns), Some(parent)) => {
-                    ball.set_after(zero, [own, &turns[k]], Some([&places[parent].attitude, &turns[parent]]));
-                }
-            }
-        }
-    }
-}
-
-/// The matrices of bodies on ball joints.
-struct BallMatrices<'a> {
-    nodes: &'a mut [Node],
-    matrices: &'a [Matrix6<f64>],
-}
-
-impl OnRegisters for BallMatrices<'_> {
-    type Output = ();
-
-    #[hot]
-    fn run<R: Register>(self, zero: R) {
-        for (node, matrix) in self.nodes.iter_mut().zip(self.matrices) {
-            if let Some(ball) = &mut node.ball {
-                ball.set_matrix(zero, matrix);
-            }
-        }
-    }
-}
-
-/// The slopes `T = S` of ball joints.
-struct BallVelocities<'a> {
-    nodes: &'a mut [Node],
-}
-
-impl OnRegisters for BallVelocities<'_> {
-    type Output = ();
-
-    #[hot]
-    fn run<R: Register>(self, zero: R) {
-        for node in self.nodes {
-            if let Some(ball) = &mut node.ball {
-                ball.set_velocities(zero);
-            }
-        }
-    }
-}
-
 /// The functions of a joint at these places.
 pub(super) fn gap(joined: &Joint, places: &[Place]) -> Vector6<f64> {
     let (above, below) = (place_of(places, joined.above), &places[joined.below]);
@@ -145,11 +80,13 @@ impl Equations {
         let rows = |joint: Option<usize>| joint.map_or(0, |joint| joints[joint].rows);
         let all = [tree.members.len(), tree.loops.len()];
         let of_points = |member: &Member, neighbours: &[Neighbour]| {
-            let is_alone = !neighbours.iter().any(|neighbour| neighbour.is_coupled);
-            member.joint.and_then(|joint| joints[joint].of_points).filter(|_| is_alone)
+            let is_parent = |neighbour: &Neighbour| Some(neighbour.body) == member.parent;
+            let is_alone = neighbours.iter().all(|neighbour| is_parent(neighbour) || !neighbour.is_coupled);
+            member.joint.and_then(|joint| joints[joint].of_points).filter(|_| is_alone && neighbours.len() < 2)
         };
+        let is_coupled = |neighbours: &[Neighbour]| neighbours.iter().any(|neighbour| neighbour.is_coupled);
         let node = |(member, neighbours): (&Member, &Vec<_>)| Node {
-            ball: of_points(member, neighbours).map(|joint| Ball::new(joint, member.is_below)),
+            ball: of_points(member, neighbours).map(|joint| Ball::new(joint, member.is_below, is_coupled(neighbours))),
             ..Node::new(rows(member.joint), member.parent.is_some(), neighbours)
         };
         let is_like = |(one, (member, neighbours)): (&Node, (&Member, &Vec<_>))| {
@@ -269,15 +206,13 @@ impl Equations {
     /// Writes the reactions `Σ Eᵀ p` of each body: the momentum that the multipliers take.
     pub(super) fn reactions(&self, tree: &Tree, reactions: &mut [Vector6<f64>]) {
         reactions.fill(Vector6::zeros());
+        on_registers(BallReactions { tree, nodes: &self.nodes, multipliers: &self.unknowns.joints, reactions });
         for (k, (node, member)) in self.nodes.iter().zip(&tree.members).enumerate() {
-            if member.joint.is_none() {
+            if member.joint.is_none() || node.ball.is_some() {
                 continue;
             }
             let multipliers = &self.unknowns.joints[k];
-            let [own, of_parent] = match &node.ball {
-                Some(ball) => ball.reactions(multipliers),
-                None => node.ends.each_ref().map(|ends| ends.momentum(multipliers)),
-            };
+            let [own, of_parent] = node.ends.each_ref().map(|ends| ends.momentum(multipliers));
             reactions[k] += own;
             if let Some(parent) = member.parent {
                 reactions[parent] += of_parent;

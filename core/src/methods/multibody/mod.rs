@@ -17,9 +17,15 @@
 //! are. In minimal coordinates, if there are any, it is the same as the step of the minimal form.
 //!
 //! The unknowns of Newton's iteration are half the coordinates `y` of `F` and the multipliers. The residual is affine
-//! in the multipliers, so they need no initial guess from the last step.
+//! in the multipliers, so they need no initial guess from the last step. A Jacobian serves further updates while these shorten
+//! fast enough.
+//!
+//! A body on a ball, a pin, a universal joint or a weld towards the root of its tree is eliminated in blocks of three. Such a
+//! link of a chain takes 1.7 to 2.4 times the instructions of one of a [`Chain`](crate::methods::Chain), which has half the unknowns
+//! and no momenta to project; the bench `systems` has both.
 
 mod ball;
+mod balls;
 mod composed;
 mod constraint;
 mod couplings;

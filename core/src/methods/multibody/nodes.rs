@@ -46,7 +46,7 @@ pub(super) struct Node {
     /// Whether that joint is at another body, the first of the blocks.
     pub(super) has_parent: bool,
     pub(super) blocks: Vec<Block>,
-    /// That joint if it is a ball joint, and no term couples the body with another; its maps aren't in `ends`.
+    /// That joint if it holds a point, and no term couples the body with a later one but the parent; its maps aren't in `ends`.
     pub(super) ball: Option<Ball>,
     /// The least pivot of that joint, relative to the diagonal; one if there is no joint.
     pub(super) pivot: f64,

@@ -149,10 +149,6 @@ pub(super) fn body_of(entries: &[f64]) -> Body {
 
 /// Writes the entries of a body's matrices, row by row.
 pub(super) fn write_body(entries: &mut [f64], body: &Body) {
-    for (entry, value) in entries.iter_mut().zip(body.0.as_matrix().transpose().iter()) {
-        *entry = *value;
-    }
-    for (entry, value) in entries[9..].iter_mut().zip(body.1.as_matrix().transpose().iter()) {
-        *entry = *value;
-    }
+    entries[..9].copy_from_slice(body.0.as_matrix().transpose().as_slice());
+    entries[9..ATTITUDE].copy_from_slice(body.1.as_matrix().transpose().as_slice());
 }

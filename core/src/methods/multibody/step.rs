@@ -14,10 +14,16 @@ use super::{Body, place};
 use crate::error::StepError;
 use crate::groups::{CayleyRetraction, LieGroup as _, Retraction};
 use crate::motion::StepReport;
+use crate::numbers::Coordinates;
 
 /// The number of steps between two projections of attitudes onto the rotations. Internal forces cancel only as far as
 /// attitudes are rotations; otherwise the total momentum drifts in proportion to the steps.
 const STEPS_BETWEEN_CHECKS: f64 = 64.0;
+
+/// Whether all entries are finite.
+fn is_finite(vectors: &[Vector6<f64>]) -> bool {
+    vectors.iter().all(Coordinates::is_finite)
+}
 
 impl MultibodyStepper {
     /// Makes one step of a slice that is a state; on an error it is unchanged. Adds the joints' forces. Slopes at the state
@@ -61,7 +67,6 @@ impl MultibodyStepper {
         if let Some(forces) = &mut forces {
             work.equations.add_multipliers(&self.tree, -1.0 / self.h, forces);
         }
-        let is_finite = |vectors: &[Vector6<f64>]| vectors.iter().flat_map(|v| v.iter()).all(|part| part.is_finite());
         if !is_finite(&work.momenta) || !is_finite(&work.half) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
@@ -76,18 +81,15 @@ impl MultibodyStepper {
     /// closed after it.
     fn load(&self, state: &[f64], work: &mut Workspace, is_due: bool) -> Result<(), StepError> {
         for body in 0..self.bodies() {
-            let now = body_at(state, body);
-            let restored = if is_due { now.restored(0.0) } else { None };
-            work.now[body] = restored.map_or(now, |(restored, _)| restored);
+            work.now[body] = body_at(state, body);
+            if is_due && let Some((restored, _)) = work.now[body].restored(0.0) {
+                work.now[body] = restored;
+            }
             work.places[body] = place(&work.now[body]);
             work.momenta[body] = self.offsets.momentum(state, body);
             work.half[body] = self.offsets.guess(state, body);
         }
-        if work.momenta.iter().flat_map(|momentum| momentum.iter()).all(|part| part.is_finite()) {
-            Ok(())
-        } else {
-            Err(StepError::NonFinite { what: "momentum" })
-        }
+        if is_finite(&work.momenta) { Ok(()) } else { Err(StepError::NonFinite { what: "momentum" }) }
     }
 
     /// The kicks before the step, and the right-hand sides.
@@ -213,7 +215,7 @@ impl MultibodyStepper {
             work.a[body] = force * (self.h * 0.5);
         }
         self.project(work).map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
-        if !work.momenta.iter().flat_map(|momentum| momentum.iter()).all(|part| part.is_finite()) {
+        if !is_finite(&work.momenta) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
         self.offsets.write_momenta(state, &work.momenta);

@@ -334,13 +334,14 @@ fn the_newton_matrix_is_the_derivative_of_the_residual() {
 /// Elimination along the tree solves the equations of bodies and joints as a dense matrix does.
 #[test]
 fn elimination_along_the_tree_is_that_of_the_whole_matrix() {
-    for stepper in [coupled(0.1), branched(0.1)] {
+    for stepper in [coupled(0.1), branched(0.1, &[]), branched(0.1, &[[0, 1], [1, 2], [3, 1], [5, 3], [6, 0], [4, 3]])]
+    {
         compare_with_the_whole_matrix(&stepper);
     }
 }
 
-/// Joints that hold points in a tree that branches, two of them from the body below to that above, without terms between bodies.
-fn branched(h: f64) -> MultibodyStepper {
+/// Joints that hold points in a tree that branches, two of them from the body below to that above, and terms between these bodies.
+fn branched(h: f64, terms: &[[usize; 2]]) -> MultibodyStepper {
     let mut system = Multibody::new();
     for mass in [1.0, 1.3, 1.6, 1.9, 0.7, 1.2, 0.8] {
         system.body(rod(mass, 0.4));
@@ -353,6 +354,9 @@ fn branched(h: f64) -> MultibodyStepper {
     system.join(ball(aside, LEFT), Some(4), 3);
     system.join(Joint::weld([RIGHT, LEFT], *turn.as_matrix()), Some(3), 5);
     system.join(Joint::slider([RIGHT, LEFT], aside, *turn.as_matrix()), Some(0), 6);
+    for &bodies in terms {
+        system.between(bodies.map(Some), CrossTerm { c: 0.4 });
+    }
     system.stepper(h).unwrap()
 }
 

@@ -4,9 +4,9 @@
 //! the factors of a [`Ball`](super::ball::Ball),
 //!
 //! ```text
-//! B z + G ξ + Dᵀ π = −t        C z + C_b z_b = −γ        X = B⁻¹ Dᵀ        S = C X
-//! P₁ = S⁻¹ C_b       P₂ = −S⁻¹ C B⁻¹ G        s = S⁻¹ (γ − C w)           π = s + P₁ z_b + P₂ ξ
-//! z = −(w + X s) − (B⁻¹ G + X P₂) ξ − X P₁ z_b
+//! B z + G ξ + K z_b + Dᵀ π = −t        C z + C_b z_b = −γ        X = B⁻¹ Dᵀ        S = C X
+//! P₁ = S⁻¹ (C_b − C B⁻¹ K)       P₂ = −S⁻¹ C B⁻¹ G        s = S⁻¹ (γ − C w)           π = s + P₁ z_b + P₂ ξ
+//! z = −(w + X s) − (B⁻¹ G + X P₂) ξ − (B⁻¹ K + X P₁) z_b
 //! ```
 
 use nalgebra::{SMatrix, Vector3};
@@ -32,10 +32,6 @@ pub(super) struct Turning {
     /// The products `P₁` and `P₂`.
     by_turn: Square,
     by_point: Square,
-    /// The product `X P₁`.
-    turned: Square,
-    /// The product `H X P₁`: the part of the ball joint's force by the parent's turn.
-    pub(super) force: Square,
     /// The products `D_bᵀ P₁` and `D_bᵀ P₂`.
     pub(super) of_parent: [Square; 2],
     /// The least pivot of `S` relative to its diagonal, and the determinant.
@@ -46,24 +42,9 @@ pub(super) struct Turning {
 impl Turning {
     pub(super) fn new(directions: [[Vector3<f64>; 2]; 3], rows: usize) -> Self {
         let (before, after, of_parent) = ([ZERO; 2], [ZERO; 2], [ZERO; 2]);
-        let (across, x, inverse, by_turn, by_point, turned, force) = (ZERO, ZERO, ZERO, ZERO, ZERO, ZERO, ZERO);
+        let (across, x, inverse, by_turn, by_point) = (ZERO, ZERO, ZERO, ZERO, ZERO);
         let (pivot, determinant) = (1.0, 1.0);
-        Self {
-            rows,
-            directions,
-            before,
-            after,
-            across,
-            x,
-            inverse,
-            by_turn,
-            by_point,
-            turned,
-            force,
-            of_parent,
-            pivot,
-            determinant,
-        }
+        Self { rows, directions, before, after, across, x, inverse, by_turn, by_point, of_parent, pivot, determinant }
     }
 
     /// Adds the functions to the maps of a joint.
@@ -87,31 +68,36 @@ impl Turning {
         [turn, turn_of_other]: [Columns<R>; 2],
     ) -> [Square; 2] {
         let (turn, turn_of_other) = (turn.transposed(), turn_of_other.transposed());
-        let mut slopes = [ZERO; 2];
-        for row in 0..self.rows {
-            let [u, v] = &self.directions[row];
+        let (mut of_own, mut of_other) = (ZERO, ZERO);
+        let both = of_own.iter_mut().zip(&mut of_other);
+        for ((of_own, of_other), [u, v]) in both.zip(&self.directions).take(self.rows) {
             let axis = cross(own.map(zero.of(padded(u))), other.map(zero.of(padded(v))));
-            slopes[0][row] = turn.map(axis).entries();
-            slopes[1][row] = (zero - turn_of_other.map(axis)).entries();
+            *of_own = turn.map(axis).entries();
+            *of_other = (zero - turn_of_other.map(axis)).entries();
         }
-        slopes
+        [of_own, of_other]
     }
 
-    /// Factorises the multipliers' matrix from `B⁻¹` and `B⁻¹ G`; returns `X P₁` and `X P₂`.
-    pub(super) fn factorise<R: Register>(&mut self, zero: R, inverse: Columns<R>, z: Columns<R>) -> [Columns<R>; 2] {
+    /// Factorises the multipliers' matrix from `B⁻¹`, `B⁻¹ K` and `B⁻¹ G`; returns `X P₁` and `X P₂`.
+    pub(super) fn factorise<R: Register>(
+        &mut self,
+        zero: R,
+        inverse: Columns<R>,
+        [u, z]: [Columns<R>; 2],
+    ) -> [Columns<R>; 2] {
         let c = loaded(zero, &self.after[0]).transposed();
         let x = inverse * loaded(zero, &self.before[0]);
         let s = matrix(&(c * x).entries());
         let inverse;
         (inverse, self.pivot, self.determinant) = inverted(&s, &s.diagonal(), self.rows);
         let inverse = stored(zero, &inverse);
-        let by_turn = inverse * loaded(zero, &self.after[1]).transposed();
+        let by_turn = inverse * (loaded(zero, &self.after[1]).transposed() - c * u);
         let by_point = Columns([zero; 3]) - inverse * (c * z);
-        let (turned, parent) = (x * by_turn, loaded(zero, &self.before[1]));
+        let parent = loaded(zero, &self.before[1]);
         (self.across, self.x, self.inverse) = (c.entries(), x.entries(), inverse.entries());
-        (self.by_turn, self.by_point, self.turned) = (by_turn.entries(), by_point.entries(), turned.entries());
+        (self.by_turn, self.by_point) = (by_turn.entries(), by_point.entries());
         self.of_parent = [(parent * by_turn).entries(), (parent * by_point).entries()];
-        [turned, x * by_point]
+        [x * by_turn, x * by_point]
     }
 
     /// The multipliers `s` for `w` and the gap `γ`, the part `X s` of the turn, and the part `D_bᵀ s` of the parent's momentum.
@@ -120,10 +106,9 @@ impl Turning {
         [s, loaded(zero, &self.x).map(s), loaded(zero, &self.before[1]).map(s)]
     }
 
-    /// The multipliers by `s`, the turn of the parent and the shift of its point, and the part `X P₁ z_b` of the turn.
-    pub(super) fn completed<R: Register>(&self, zero: R, s: R, turn: R, point: R) -> [R; 2] {
-        let multipliers = s + loaded(zero, &self.by_turn).map(turn) + loaded(zero, &self.by_point).map(point);
-        [multipliers, loaded(zero, &self.turned).map(turn)]
+    /// The multipliers by `s`, the turn of the parent and the shift of its point.
+    pub(super) fn completed<R: Register>(&self, zero: R, s: R, turn: R, point: R) -> R {
+        s + loaded(zero, &self.by_turn).map(turn) + loaded(zero, &self.by_point).map(point)
     }
 }
 
