@@ -461,7 +461,7 @@ fn effects_turn_one_of_several_bodies() {
     let whole = text("moments = [1, 1, 1]\ndrag.c = 0.1", "accuracy = 1e-4");
     let choice = run(&whole).choice().unwrap().clone();
     assert_eq!((choice.offers().len(), system(&whole).about().as_str()), (1, "1 body + drag, 1 s to 1e-4"));
-    assert!(system(&whole).derivation().contains("Drag"));
+    assert!(system(&whole).derivation().contains(liestep_scene::derivation("drag").unwrap()));
     let composed = "step = 0.1\nmethod = { composition = \"Suzuki 4\" }";
     let refused = [
         (
