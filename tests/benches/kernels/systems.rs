@@ -121,7 +121,7 @@ fn chain<const N: usize>() -> Group {
     };
     let by_attitudes = Kernel::new("links", move || {
         let (stepper, mut state) = ready()?;
-        Ok(move |steps| Ok(stepper.run(&mut state, steps.into())?))
+        Ok(move |steps: u32| Ok(stepper.run(&mut state, steps.into())?))
     });
     let by_joints = Kernel::new("bodies and joints", move || {
         let ((chain, mut links), (stepper, mut state)) = (ready()?, bodies()?);
@@ -133,7 +133,7 @@ fn chain<const N: usize>() -> Group {
         let apart =
             |body: usize| (links.attitude()[body].as_matrix() - stepper.attitude(&other, body).0.as_matrix()).amax();
         assert!((0..N).map(apart).fold(0.0, f64::max) < 1e-11, "the chains have other motions");
-        Ok(move |steps| Ok(stepper.run(&mut state, steps.into())?))
+        Ok(move |steps: u32| Ok(stepper.run(&mut state, steps.into())?))
     });
     Group::new(format!("chain of {N}"), Effort { batch: 200, rounds: 20, counted: 100 }, [by_attitudes, by_joints])
 }
@@ -164,6 +164,6 @@ pub(crate) fn groups() -> Vec<Group> {
         Ok((stepper, state))
     };
     let small = [group("double pendulum", pendulum), group("top on a cart", cart), group("two-body problem", two)];
-    let many = [row::<4>(), row::<32>(), chain::<5>(), chain::<20>(), chain::<100>()];
+    let many = [row::<4>(), row::<32>(), chain::<5>(), chain::<20>()];
     small.into_iter().chain(many).collect()
 }

@@ -21,7 +21,7 @@
 //! fast enough.
 //!
 //! A body on a ball, a pin, a universal joint or a weld towards the root of its tree is eliminated in blocks of three. Such a
-//! link of a chain takes 1.7 to 2.4 times the instructions of one of a [`Chain`](crate::methods::Chain), which has half the unknowns
+//! link of a chain takes 1.8 to 2.5 times the instructions of one of a [`Chain`](crate::methods::Chain), which has half the unknowns
 //! and no momenta to project; the bench `systems` has both.
 
 mod ball;
