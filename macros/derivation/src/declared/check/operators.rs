@@ -260,7 +260,6 @@ fn number(expression: &Expr) -> Option<usize> {
 fn beside_each_other(operator: BinOp, left: Rc<Tree>, right: Rc<Tree>) -> (Rc<Tree>, Rc<Tree>) {
     let sized = |identity: &Tree, other: Shape, is_left: bool| {
         let rows = match (operator, other) {
-            (_, OF_ANY_SIZE) => return None,
             (BinOp::Add(_) | BinOp::Sub(_), Shape::Matrix(rows, columns)) if rows == columns => rows,
             (BinOp::Mul(_), Shape::Matrix(rows, columns)) => {
                 if is_left {

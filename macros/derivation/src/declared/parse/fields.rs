@@ -168,16 +168,16 @@ pub(super) fn points(fields: &mut [Field], group: &Group, errors: &mut Errors) {
             field.kind = FieldKind::Vector(rows);
             continue;
         }
-        let message = if !group.is_affine() {
-            format!(
-                "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use {}",
-                vector_type(size)
-            )
-        } else {
+        let message = if group.is_affine() {
             let (found, wanted) = (rows - 1, size - 1);
             format!(
                 "`{name}` is a point of {found} coordinates, but the group moves points of {wanted}: use \
                  Point{wanted}<f64>"
+            )
+        } else {
+            format!(
+                "`{name}` is a point, but this group moves vectors only, as it leaves the origin: use {}",
+                vector_type(size)
             )
         };
         errors.push(field.at, message);
