@@ -233,12 +233,10 @@ fn of_pace(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     if let Some(odds) = file.run.at_odds(document, file.has_steps_of_its_own()) {
         return Some(odds);
     }
-    if let Pace::Accuracy(_) = file.run.pace {
-        if file.kinetic() != Kinetic::Rigid {
-            let message = "an `accuracy`, which a run without a `step` has, chooses the method for the kinetic term \
-                           `rigid`; leave `kinetic` out, or give a `step`";
-            return wrong(&["body", "kinetic"], message.to_owned());
-        }
+    if matches!(file.run.pace, Pace::Accuracy(_)) && file.kinetic() != Kinetic::Rigid {
+        let message = "an `accuracy`, which a run without a `step` has, chooses the method for the kinetic term `rigid`; leave \
+                       `kinetic` out, or give a `step`";
+        return wrong(&["body", "kinetic"], message.to_owned());
     }
     None
 }
