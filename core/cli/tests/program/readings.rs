@@ -57,9 +57,9 @@ fn two_readings_of_a_field_are_its_rate() {
     assert!(fine.abs() < 0.01 * expected && (3.8..4.2).contains(&(coarse / fine)), "{coarse:e} {fine:e} {expected}");
 }
 
-/// Readings contain the change of the field along the orbit: by `m = −k ḃ` a CubeSat of two units, with 2 deg/s about each axis,
+/// Readings contain the change of the field along the orbit: by `m = −k ḃ` a small satellite, with 2 deg/s about each axis,
 /// ends half an orbit at 1.454613 deg/s, and by `m = −k b × Ω`, as the effect `magnetic_damping` has it, at 1.491817 deg/s. Both are
-/// Euler's equations by DOP853 of SciPy to 1e-11.
+/// Euler's equations by DOP853 to 1e-11.
 #[test]
 fn readings_contain_the_change_of_the_field_along_the_orbit() {
     let folder = folder("readings_contain_the_change_of_the_field_along_the_orbit");
