@@ -6,8 +6,6 @@ use alloc::vec::Vec;
 
 use nalgebra::{Matrix6, Vector6};
 
-roots!();
-
 use super::ball::Ball;
 use super::ends::Ends;
 use super::graph::{Neighbour, Tree};
