@@ -95,9 +95,13 @@ def test_a_scene_that_cant_be_split_is_refused(top):
     J = [3, 3, 4]
     turning = ls.lagrangian("SO3", l="Omega.dot(J * Omega) / 2 + a.dot(Omega) * w.dot(a)", discretise="trapezoid(Cayley)",
                             advected={"w": "up"}, J=J, a=[0, 0, 1], up=[0, 0, 1])
-    for method in ({"splitting": "Strang"}, {"collocation": 4}, {"processed": ls.schemes()["processed"][0]}):
+    for method in ({"splitting": "Strang"}, {"processed": ls.schemes()["processed"][0]}):
         with pytest.raises(ls.SetupError):
             turning.stepper(0.01, **method)
+    # Collocation is of any Lagrangian.
+    ends = [turning.stepper(0.01, **method).run(velocity=[0.3, 1, -0.5], until=1).attitude[-1]
+            for method in ({"collocation": 4}, {"composition": "Suzuki 4"})]
+    assert abs(ends[0] - ends[1]).max() < 1e-8
     with pytest.raises(ls.SetupError):
         (top + ls.drag(c=0.1, J=J)).stepper(0.01, splitting="Strang")
     with pytest.raises(ls.DeclarationError):

@@ -19,6 +19,9 @@ use crate::solving::{LONGEST_DAMPED, MAX_DAMPED_ITERATIONS};
 const PRINTED: f64 = f64::EPSILON * 1e5;
 /// The tolerance for gaps in the search for a start: rounding, as after steps.
 const CLOSED: f64 = 2.0 * f64::EPSILON;
+/// The turn in a step, rad, below which velocities at rest count as rounding: attitudes are a few roundings off, and the search for
+/// an accuracy begins a run some roundings beside the start.
+const AT_REST: f64 = 256.0 * f64::EPSILON;
 /// The longest turn in one update of the search for a start, rad; half coordinates have half of it.
 const LONGEST: f64 = 2.0 * LONGEST_DAMPED;
 impl MultibodyStepper {
@@ -122,8 +125,7 @@ impl MultibodyStepper {
         }
         self.check_redundance(&equations)?;
         let velocities = self.velocities_of(bodies, momenta);
-        // The turning rate that rounding errors of attitudes produce in a step at rest.
-        let least = if self.h == 0.0 { 0.0 } else { CLOSED / (PRINTED * self.h.abs()) };
+        let least = if self.h == 0.0 { 0.0 } else { AT_REST / (PRINTED * self.h.abs()) };
         let Widest { joint, by, relative } = equations.widest_parting(&self.tree, &velocities, &self.lengths, least);
         if relative <= PRINTED { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
     }
