@@ -99,7 +99,7 @@ def test_a_scene_that_cant_be_split_is_refused(top):
         with pytest.raises(ls.SetupError):
             turning.stepper(0.01, **method)
     # Collocation is of any Lagrangian.
-    ends = [turning.stepper(0.01, **method).run(velocity=[0.3, 1, -0.5], until=1).attitude[-1]
+    ends = [turning.stepper(0.01, **method).run(velocity=[0.3, 1, -0.5], until=1).momentum[-1]
             for method in ({"collocation": 4}, {"composition": "Suzuki 4"})]
     assert abs(ends[0] - ends[1]).max() < 1e-8
     with pytest.raises(ls.SetupError):
