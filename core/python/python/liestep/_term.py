@@ -155,7 +155,7 @@ class Term(Sum):
         Over ten seconds a guess that is a third off is turns apart, unless the search begins with one second:
 
         >>> gyroscope = body([1.0, 2.0, 2.5]).stepper(0.02).run(velocity=[0.5, 1, 2], until=10).velocity
-        >>> fit = body([1.3, 1.6, 3.0]).estimate(step=0.02, readings={"velocity": (gyroscope, 1e-3)}, unknown=["J"],
+        >>> fit = body([1.3, 1.8, 3.0]).estimate(step=0.02, readings={"velocity": (gyroscope, 1e-3)}, unknown=["J"],
         ...     known={"attitude": 1e-3}, first=50)
         >>> fit.verdict, bool(abs(np.diag(fit.parameters["J"]) - [1, 2, 2.5]).max() < 1e-6)
         ('converged', True)
