@@ -15,6 +15,8 @@ from .text import long_decimals
 
 Arrays = dict[str, list[Dual]]
 DRAWS = 100
+# A claim on two rotations takes four square roots at once, each of which half of the points have.
+POINTS = 2000
 
 
 def same(left: Sequence[Dual], right: Sequence[Dual]) -> bool:
@@ -450,11 +452,11 @@ def verified(data: dict[str, Any]) -> dict[str, bool | str]:
 
 def decided(step: Step, claim: Callable[[Step], bool]) -> tuple[bool | str, Step]:
     """Whether a claim holds, and the step of which that was found."""
-    for _ in range(DRAWS):
+    for _ in range(POINTS):
         try:
             return claim(step), step
         except Unlucky:
             step = Step(step.data)
         except Declined as reason:
             return str(reason), step
-    return f"no point was found in {DRAWS} draws", step
+    return f"no point was found in {POINTS} draws", step
