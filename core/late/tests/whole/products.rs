@@ -31,7 +31,7 @@ struct BodyAndWheel {
     up: Vector3<f64>,
 }
 
-/// The same, the wheel first.
+/// The body and the wheel in the other order of factors.
 const WHEEL_FIRST: &str = "#[lagrangian(
     group(Q = SO3, F = SE3),
     advected(w = height.seen_from(F), u = up.seen_from(Q)),
@@ -41,8 +41,8 @@ const WHEEL_FIRST: &str = "#[lagrangian(
     K: Matrix4<f64>, J: Matrix3<f64>, weight: Vector4<f64>, c: f64, height: Vector4<f64>, up: Vector3<f64>,
 }";
 
-/// The same with a place in space in the stead of a matrix of SE(3): `tr (F − I) K (F − I)ᵀ` is that of the turn and `m |d|²`,
-/// and the height of the weight `s/W` is `(v · s + W z)/W`.
+/// The body by its turn and its place in space, not by a matrix of SE(3), and the wheel: `tr (F − I) K (F − I)ᵀ` is that of the
+/// turn and `m |d|²`, and the height of the weight `s/W` is `(v · s + W z)/W`.
 const BY_PLACE: &str = "#[lagrangian(
     group(F = SO3, d = R3, Q = SO3),
     advected(v = up.seen_from(F), x = d.seen_from(space), u = up.seen_from(Q)),

@@ -139,7 +139,7 @@ impl Controller {
             Value::Number(error.w),
             Value::Vector(error.imag()),
         ];
-        // What belongs to samples.
+        // The time between samples and the readings before belong to sampled laws.
         let every = self.every.filter(|_| !self.is_at_ends).map(Value::Number);
         let before = if self.is_at_ends { &[] } else { before };
         let readings = now.iter().chain(before).copied().map(Value::Vector);

@@ -64,7 +64,7 @@ pub(crate) trait Moving: Parts {
         "J"
     }
 
-    /// What a summary says about the ends of a run behind the energy.
+    /// The part of a summary behind the energy: the ends of a run in words.
     fn ends_in_words(&self, run: &Run, ends: [&Sample; 2]) -> String;
 
     /// Differences between the start of a run and that of the file.
