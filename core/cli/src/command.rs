@@ -117,8 +117,8 @@ fn fmu() -> Command {
 fn import() -> Command {
     Command::new("import")
         .about("Writes a scene for each model of a robot, with what has no counterpart as comments")
-        .arg(files("Models of URDF"))
-        .arg(flag("floating", "The root link is a body that floats; without, it is space"))
+        .arg(files("Models of URDF, SDF or MJCF"))
+        .arg(flag("floating", "The root link of URDF is a body that floats; without, it is space"))
         .arg(out())
 }
 

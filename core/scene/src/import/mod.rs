@@ -4,16 +4,21 @@
 //! one body, and the scene has its bodies placed by joints. Elements without a counterpart are listed, none is left out in
 //! silence.
 //!
-//! The files depend on each other in one direction: `urdf → robot → rigid`.
+//! The files depend on each other in one direction: `{mjcf, sdf, urdf} → xml → robot → rigid`, and `parts` has the files that a
+//! model includes.
 
+mod mjcf;
+mod parts;
 mod rigid;
 mod robot;
+mod sdf;
 mod urdf;
+mod xml;
 
 use std::path::Path;
 
 use crate::file::mistake::Mistake;
-use crate::file::text::text;
+use parts::Parts;
 
 /// A scene that was made of a model, and the remarks about what it doesn't have.
 #[derive(Clone, Debug)]
@@ -24,19 +29,31 @@ pub struct Import {
     pub remarks: Vec<String>,
 }
 
-/// Makes a scene of a model: a file of URDF.
+/// Makes a scene of a model: a file of URDF, SDF or MJCF, which the root element tells.
 ///
-/// Its root link is space, unless the model `floats` or has no joint that moves: then the root is a body that starts at rest at
-/// the origin.
+/// The root link of URDF is space, unless the model `floats` or has no joint that moves: then the root is a body that starts at
+/// rest at the origin. Models of SDF and MJCF say themselves which bodies are free.
 ///
 /// # Errors
 ///
 /// A [`Mistake`] with the place in the file: text that isn't XML, elements without what they need, links that joints don't
-/// connect to one root.
+/// connect to one root, joints without a counterpart that bodies would fall apart without.
 pub fn import(path: impl AsRef<Path>, floats: bool) -> Result<Import, Mistake> {
-    let path = path.as_ref();
-    let text = text(path)?;
-    urdf::read(&text)
-        .and_then(|robot| robot.scene(floats))
-        .map_err(|(place, message)| Mistake::at(path, place, message))
+    let parts = Parts::read(path.as_ref())?;
+    let made = || {
+        let document = xml::parsed(parts.text())?;
+        let root = document.root_element();
+        let robot = match root.tag_name().name() {
+            "robot" => urdf::read(&root),
+            "sdf" => sdf::read(&root),
+            "mujoco" => mjcf::read(&root),
+            other => {
+                let message =
+                    format!("a model is an element `robot` of URDF, `sdf` or `mujoco`, and this is `{other}`");
+                Err((xml::place(&root), message))
+            }
+        };
+        robot?.scene(floats)
+    };
+    made().map_err(|(place, message)| parts.mistake(place, message))
 }

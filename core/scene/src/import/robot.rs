@@ -14,12 +14,29 @@ use crate::file::quantity::short;
 pub(super) type Unsuitable = ((usize, usize), String);
 
 /// Links, the joints between them, and remarks about elements without a counterpart.
-#[derive(Default)]
 pub(super) struct Robot {
     pub(super) name: String,
     pub(super) links: Vec<Link>,
     pub(super) joints: Vec<Joint>,
     pub(super) remarks: Vec<String>,
+    /// The acceleration of falling bodies, m/s².
+    pub(super) gravity: Vector3<f64>,
+    /// Whether the root is the world, which is space.
+    pub(super) has_world: bool,
+}
+
+impl Default for Robot {
+    fn default() -> Self {
+        let gravity = Vector3::new(0.0, 0.0, -9.81);
+        Self {
+            name: String::new(),
+            links: Vec::new(),
+            joints: Vec::new(),
+            remarks: Vec::new(),
+            gravity,
+            has_world: false,
+        }
+    }
 }
 
 pub(super) struct Link {
@@ -36,24 +53,65 @@ pub(super) struct Joint {
     pub(super) child: String,
     /// The frame of the child in that of the parent, where the joint is at zero.
     pub(super) origin: Isometry3<f64>,
+    /// The point of the joint in the child's frame, m.
+    pub(super) at: Vector3<f64>,
     pub(super) connection: Connection,
+    /// Whether the joint closes a loop: others place its child.
+    pub(super) closes: bool,
     /// N m s, or N s/m.
     pub(super) damping: f64,
     /// N m, or N.
     pub(super) friction: f64,
     /// The ends of the joint's way, rad or m.
     pub(super) limits: Option<[f64; 2]>,
+    /// N m/rad, or N/m.
+    pub(super) stiffness: f64,
+    /// The coordinate at which the spring is at rest, rad or m.
+    pub(super) rest: f64,
 }
 
-/// The kind of a joint, with its axis in the child's frame.
-#[derive(Clone, Copy)]
+impl Joint {
+    /// A joint with its name and its place in the model, between a parent and a child, at the child's origin and with nothing in it.
+    pub(super) fn new(
+        (name, place): (String, (usize, usize)),
+        [parent, child]: [String; 2],
+        (origin, connection): (Isometry3<f64>, Connection),
+    ) -> Self {
+        let at = Vector3::zeros();
+        let (closes, limits) = (false, None);
+        let [damping, friction, stiffness, rest] = [0.0; 4];
+        Self { name, place, parent, child, origin, at, connection, closes, damping, friction, limits, stiffness, rest }
+    }
+}
+
+/// The kind of a joint, with its axis in the child's frame, where the joint is at zero.
+#[derive(Clone, Copy, PartialEq)]
 pub(super) enum Connection {
     Fixed,
     Pin(Vector3<f64>),
     Slider(Vector3<f64>),
+    Cylinder(Vector3<f64>),
+    /// The axis that the parent carries, and that of the child.
+    Universal([Vector3<f64>; 2]),
     Plane(Vector3<f64>),
     Ball,
     Free,
+}
+
+impl Connection {
+    /// The kind's name in a scene, with the axis that the body above carries and that of the body below.
+    fn kind(&self) -> Option<(&'static str, Option<[Vector3<f64>; 2]>)> {
+        Some(match *self {
+            Self::Pin(axis) => ("pin", Some([axis; 2])),
+            Self::Slider(axis) => ("slider", Some([axis; 2])),
+            Self::Cylinder(axis) => ("cylinder", Some([axis; 2])),
+            Self::Universal(axes) => ("universal", Some(axes)),
+            Self::Plane(axis) => ("plane", Some([axis; 2])),
+            Self::Ball => ("ball", None),
+            Self::Fixed => ("weld", None),
+            Self::Free => return None,
+        })
+    }
 }
 
 /// Links that are fixed to each other, in the frame of the first.
@@ -66,14 +124,19 @@ struct Group {
     arm: Option<Arm>,
 }
 
-/// A moving joint of a group with its parent.
+/// A moving joint of a group with its parent, or one that closes a loop.
 #[derive(Clone, Copy)]
 struct Arm {
     joint: usize,
     parent: usize,
-    /// The frame of the group in that of the parent, at zero.
+    /// The frame of the joint's child in that of the parent's group, at zero.
     frame: Isometry3<f64>,
+    /// The frame of the joint's child in that of its own group.
+    own: Isometry3<f64>,
 }
+
+/// The group of a link, and the link's frame in that of the group.
+type Place = (usize, Isometry3<f64>);
 
 /// The radius of a ball whose inertia a link without one gets, m.
 const RADIUS: f64 = 0.01;
@@ -92,9 +155,13 @@ impl Robot {
             without_mass.map(|link| format!("link {}: an inertia without a mass, counted as it is given", link.name));
         let remarks: Vec<_> = remarks.collect();
         self.remarks.extend(remarks);
-        let mut groups = self.groups()?;
+        let (mut groups, closings) = self.groups()?;
+        if floats && self.has_world {
+            let message = "this model says itself which bodies are free: leave `--floating` out, which is for URDF";
+            return Err(((1, 1), message.to_owned()));
+        }
         // A model of one body is that of a thing, not of a machine that stands somewhere.
-        let floats = floats || groups.len() == 1;
+        let floats = floats || (groups.len() == 1 && !self.has_world);
         let mut is_there = self.leaves(&groups, floats);
         if !floats && let Some(root) = is_there.first_mut() {
             *root = false;
@@ -111,16 +178,19 @@ impl Robot {
         for (number, group) in groups.iter().enumerate().filter(|(number, _)| is_there[*number]) {
             body(&mut text, group, &names[number], &self.joints);
         }
-        for (number, group) in groups.iter().enumerate().filter(|(number, _)| is_there[*number]) {
-            let Some(arm) = group.arm.filter(|arm| !matches!(self.joints[arm.joint].connection, Connection::Free))
-            else {
-                continue;
+        let placing = groups.iter().enumerate().filter_map(|(number, group)| Some((number, group.arm?)));
+        for (number, arm) in placing.chain(closings) {
+            let end = |group: usize| {
+                if is_there[group] {
+                    (names[group].as_str(), groups[group].mass.centre)
+                } else {
+                    ("space", Vector3::zeros())
+                }
             };
-            let above = if is_there[arm.parent] { Some(arm.parent) } else { None };
-            let centre = above.map_or_else(Vector3::zeros, |above| groups[above].mass.centre);
-            let above = above.map_or("space", |above| &names[above]);
-            let name = &of_joints[arm.joint];
-            self.joint(&mut text, (&arm, name), (above, centre), (&names[number], group.mass.centre));
+            let ends = [end(arm.parent), end(number)];
+            if is_there[number] || (self.joints[arm.joint].closes && is_there[arm.parent]) {
+                self.joint(&mut text, (&arm, &of_joints[arm.joint]), ends);
+            }
         }
         let head = self.head();
         let run = "[run]\nstep = \"1 ms\"\nduration = 1\n";
@@ -135,12 +205,18 @@ impl Robot {
             let _ = writeln!(head, "# {}", plain(remark));
         }
         let title = toml::Value::String(plain(&self.name));
-        let _ = writeln!(head, "title = {title}\ngravity = {{ g = 9.81, up = [0, 0, 1] }}\n");
+        let _ = writeln!(head, "title = {title}");
+        let g = self.gravity.norm();
+        if g > 0.0 {
+            let _ = writeln!(head, "gravity = {{ g = {}, up = {} }}", written(g), list(&(self.gravity / -g)));
+        }
+        head.push('\n');
         head
     }
 
-    /// The groups of fixed links, from the root on: each after its parent.
-    fn groups(&self) -> Result<Vec<Group>, Unsuitable> {
+    /// The groups of fixed links, from the root on: each after its parent; and the joints that close loops, each with the group
+    /// of its child.
+    fn groups(&self) -> Result<(Vec<Group>, Vec<(usize, Arm)>), Unsuitable> {
         let mut numbers = HashMap::new();
         for (number, link) in self.links.iter().enumerate() {
             if numbers.insert(link.name.as_str(), number).is_some() {
@@ -155,6 +231,9 @@ impl Robot {
                 numbers.get(name).copied().ok_or_else(unknown)
             };
             let (parent, child) = (find(&joint.parent)?, find(&joint.child)?);
+            if joint.closes {
+                continue;
+            }
             if parents[child].replace(number).is_some() {
                 return Err((joint.place, format!("the link `{}` has a parent already", joint.child)));
             }
@@ -175,29 +254,36 @@ impl Robot {
         let mut groups = vec![group(root, Isometry3::identity(), None)];
         // The links whose children are to be read, each with its group and its frame there.
         let mut open = vec![(root, 0, Isometry3::identity())];
-        let mut reached = 1;
+        let mut places: Vec<Option<Place>> = vec![None; self.links.len()];
+        places[root] = Some((0, Isometry3::identity()));
         while let Some((link, number, frame)) = open.pop() {
             for &joint in children[link].iter().rev() {
                 let Joint { origin, connection, child, .. } = &self.joints[joint];
                 let (child, frame) = (numbers[child.as_str()], frame * origin);
-                reached += 1;
-                if matches!(connection, Connection::Fixed) {
+                let place = if *connection == Connection::Fixed {
                     groups[number].mass = groups[number].mass.with(&self.links[child].mass.seen(&frame));
-                    open.push((child, number, frame));
+                    (number, frame)
                 } else {
-                    let arm = Arm { joint, parent: number, frame };
+                    let arm = Arm { joint, parent: number, frame, own: Isometry3::identity() };
                     let pose = groups[number].pose * frame;
-                    open.push((child, groups.len(), Isometry3::identity()));
                     groups.push(group(child, pose, Some(arm)));
-                }
+                    (groups.len() - 1, Isometry3::identity())
+                };
+                places[child] = Some(place);
+                open.push((child, place.0, place.1));
             }
         }
-        if reached < self.links.len() {
+        let Some(places) = places.into_iter().collect::<Option<Vec<Place>>>() else {
             let lost = (0..self.links.len()).find(|&link| self.is_in_circle(link, &parents, &numbers));
             let place = lost.map_or((1, 1), |link| self.links[link].place);
             return Err((place, "joints lead in a circle: no link of it is reached from the root".to_owned()));
-        }
-        Ok(groups)
+        };
+        let closing = |(joint, Joint { parent, child, origin, .. }): (usize, &Joint)| {
+            let ((parent, above), (child, own)) = (places[numbers[parent.as_str()]], places[numbers[child.as_str()]]);
+            (child, Arm { joint, parent, frame: above * origin, own })
+        };
+        let closings = self.joints.iter().enumerate().filter(|(_, joint)| joint.closes).map(closing).collect();
+        Ok((groups, closings))
     }
 
     /// Whether the parents of a link never end.
@@ -261,43 +347,48 @@ impl Robot {
         }
     }
 
-    /// The table of a joint, from the body above with this centre of mass to the body below.
-    fn joint(
-        &mut self,
-        text: &mut String,
-        (arm, plain): (&Arm, &str),
-        (above, centre): (&str, Vector3<f64>),
-        (below, own): (&str, Vector3<f64>),
-    ) {
-        let Joint { name, connection, damping, friction, limits, .. } = &self.joints[arm.joint];
-        let (kind, axis, start) = match connection {
-            Connection::Pin(axis) => ("pin", axis, "angle = 0\n"),
-            Connection::Slider(axis) => ("slider", axis, "shift = 0\n"),
-            Connection::Plane(axis) => ("plane", axis, ""),
-            Connection::Ball => ("ball", &Vector3::zeros(), ""),
-            Connection::Fixed | Connection::Free => return,
-        };
-        let point = arm.frame.translation.vector - centre;
-        let axis_above = arm.frame.rotation * axis;
+    /// The table of a joint between two bodies, each with its name and its centre of mass: that above and that below.
+    fn joint(&mut self, text: &mut String, (arm, plain): (&Arm, &str), ends: [(&str, Vector3<f64>); 2]) {
+        let Joint { name, connection, at, closes, damping, friction, limits, stiffness, rest, .. } =
+            &self.joints[arm.joint];
+        let Some((kind, axes)) = connection.kind() else { return };
+        let [(above, centre), (below, own)] = ends;
+        let [at_above, at_below] = [(&arm.frame, centre), (&arm.own, own)]
+            .map(|(frame, centre)| frame.transform_point(&(*at).into()).coords - centre);
         let _ = writeln!(text, "[[joint]]\nname = \"{plain}\"");
         let _ = writeln!(text, "kind = \"{kind}\"\nbodies = [\"{above}\", \"{below}\"]");
-        let _ = writeln!(text, "at = [{}, {}]", list(&point), list(&-own));
-        if kind != "ball" {
-            let _ = writeln!(text, "axes = [{}, {}]", list(&axis_above), list(axis));
+        let _ = writeln!(text, "at = [{}, {}]", list(&at_above), list(&at_below));
+        if let Some([first, second]) = axes {
+            let [first, second] = [arm.frame.rotation * first, arm.own.rotation * second];
+            let _ = writeln!(text, "axes = [{}, {}]", list(&first), list(&second));
         }
-        let turn = arm.frame.rotation;
+        // The attitude of the body below, as the one above sees it.
+        let turn = arm.frame.rotation * arm.own.rotation.inverse();
         if turn.angle() > 0.0 {
             let [w, x, y, z] = [turn.w, turn.i, turn.j, turn.k].map(written);
             let _ = writeln!(text, "zero = {{ quaternion = {{ w = {w}, x = {x}, y = {y}, z = {z} }} }}");
         }
-        text.push_str(start);
-        if *damping > 0.0 {
+        let has_coordinate = matches!(kind, "pin" | "slider");
+        if has_coordinate && !closes {
+            text.push_str(if kind == "pin" { "angle = 0\n" } else { "shift = 0\n" });
+        }
+        if *damping > 0.0 && kind == "weld" {
+            self.remarks.push(format!("joint {name}: it is fixed, and its damping is left out"));
+        } else if *damping > 0.0 {
             let _ = writeln!(text, "damping = {}", written(*damping));
         }
-        if *friction > 0.0 && kind == "slider" {
-            self.remarks.push(format!("joint {name}: a slider has no dry friction, {} N", short(*friction)));
+        if *friction > 0.0 && matches!(kind, "slider" | "weld") {
+            self.remarks.push(format!("joint {name}: a {kind} has no dry friction, {} N", short(*friction)));
         } else if *friction > 0.0 {
             let _ = writeln!(text, "friction = {{ torque = {}, below = {CREEP} }}", written(*friction));
+        }
+        if *stiffness > 0.0 && matches!(kind, "plane" | "weld") {
+            self.remarks.push(format!("joint {name}: a {kind} has no spring, {} N m/rad", short(*stiffness)));
+        } else if *stiffness > 0.0 {
+            let _ = writeln!(text, "stiffness = {}", written(*stiffness));
+            if has_coordinate {
+                let _ = writeln!(text, "rest = {}", angle(*rest, kind));
+            }
         }
         match (limits, kind) {
             (Some([from, to]), "pin") if to - from >= TAU => {

@@ -1,27 +1,17 @@
 //! The reader of URDF.
 
-use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
-use roxmltree::{Document, Node};
+use nalgebra::{Isometry3, Matrix3, Vector3};
+use roxmltree::Node;
 
 use super::rigid::Distribution;
-use super::robot::{Connection, Joint, Link, Robot, Unsuitable};
+use super::robot::{Connection, Joint, Link, Robot};
+use super::xml::{Read, child, direction, elements, frame, name, number, place, triple};
 use crate::file::shape::{Round, Shape};
 
-type Read<T> = Result<T, Unsuitable>;
-
-/// The robot of a text.
-pub(super) fn read(text: &str) -> Read<Robot> {
-    let document = Document::parse(text).map_err(|error| {
-        let at = error.pos();
-        ((at.row as usize, at.col as usize), format!("isn't XML: {error}"))
-    })?;
-    let root = document.root_element();
+/// The robot of an element `robot`.
+pub(super) fn read(root: &Node<'_, '_>) -> Read<Robot> {
     let mut robot = Robot { name: root.attribute("name").unwrap_or("robot").to_owned(), ..Robot::default() };
-    if root.tag_name().name() != "robot" {
-        let found = root.tag_name().name();
-        return Err((place(&root), format!("a model of URDF is an element `robot`, and this is `{found}`")));
-    }
-    for element in root.children().filter(Node::is_element) {
+    for element in elements(root) {
         match element.tag_name().name() {
             "link" => robot.links.push(link(&element, &mut robot.remarks)?),
             "joint" => robot.joints.push(joint(&element, &mut robot.remarks)?),
@@ -35,48 +25,12 @@ pub(super) fn read(text: &str) -> Read<Robot> {
     Ok(robot)
 }
 
-/// Line and column, from one.
-fn place(node: &Node<'_, '_>) -> (usize, usize) {
-    let at = node.document().text_pos_at(node.range().start);
-    (at.row as usize, at.col as usize)
-}
-
-fn child<'a, 'd>(node: &Node<'a, 'd>, name: &str) -> Option<Node<'a, 'd>> {
-    node.children().find(|child| child.has_tag_name(name))
-}
-
-fn name(node: &Node<'_, '_>) -> Read<String> {
-    let missing = || (place(node), format!("`{}` has no `name`", node.tag_name().name()));
-    node.attribute("name").map(str::to_owned).ok_or_else(missing)
-}
-
-fn finite(node: &Node<'_, '_>, text: &str) -> Read<f64> {
-    let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    number.ok_or_else(|| (place(node), format!("`{text}` isn't a finite number")))
-}
-
-/// The number of an attribute.
-fn number(node: &Node<'_, '_>, attribute: &str) -> Read<Option<f64>> {
-    node.attribute(attribute).map(|text| finite(node, text)).transpose()
-}
-
-/// Three numbers of an attribute.
-fn triple(node: &Node<'_, '_>, attribute: &str) -> Read<Option<Vector3<f64>>> {
-    let Some(text) = node.attribute(attribute) else { return Ok(None) };
-    let numbers = text.split_whitespace().map(|text| finite(node, text)).collect::<Read<Vec<_>>>()?;
-    match numbers.as_slice() {
-        &[x, y, z] => Ok(Some(Vector3::new(x, y, z))),
-        other => Err((place(node), format!("`{attribute}` has three numbers, found {}", other.len()))),
-    }
-}
-
 /// The frame of an element `origin`; the identity without one.
 fn origin(node: &Node<'_, '_>) -> Read<Isometry3<f64>> {
     let Some(origin) = child(node, "origin") else { return Ok(Isometry3::identity()) };
     let shift = triple(&origin, "xyz")?.unwrap_or_default();
     let turn = triple(&origin, "rpy")?.unwrap_or_default();
-    let turn = UnitQuaternion::from_euler_angles(turn.x, turn.y, turn.z);
-    Ok(Isometry3::from_parts(Translation3::from(shift), turn))
+    Ok(frame(shift, turn))
 }
 
 /// The remark about a shape that isn't read.
@@ -121,7 +75,7 @@ fn link(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Link> {
             remarks.push(unread(&name, shape));
         }
     }
-    for other in node.children().filter(Node::is_element) {
+    for other in elements(node) {
         let tag = other.tag_name().name();
         if !["visual", "collision", "inertial"].contains(&tag) {
             remarks.push(format!("link {name}: `{tag}`: no counterpart"));
@@ -156,13 +110,10 @@ fn link(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Link> {
     Ok(Link { name, place: place(node), mass })
 }
 
-/// An axis, with the coordinate axis without rounding where it is one.
+/// The axis of a joint.
 fn axis(node: &Node<'_, '_>) -> Read<Vector3<f64>> {
     let Some(axis) = child(node, "axis") else { return Ok(Vector3::x()) };
-    let given = triple(&axis, "xyz")?.unwrap_or_else(Vector3::x);
-    let scaled = given / given.amax();
-    let unit = scaled.try_normalize(0.5).filter(|unit| unit.iter().all(|part| part.is_finite()));
-    unit.ok_or_else(|| (place(&axis), "an axis can't be zero".to_owned()))
+    direction(&axis, triple(&axis, "xyz")?.unwrap_or_else(Vector3::x))
 }
 
 fn joint(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Joint> {
@@ -186,7 +137,7 @@ fn joint(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Joint> {
         }
     };
     let (mut damping, mut friction, mut limits) = (0.0, 0.0, None);
-    for other in node.children().filter(Node::is_element) {
+    for other in elements(node) {
         match other.tag_name().name() {
             "parent" | "child" | "origin" | "axis" => (),
             "dynamics" => {
@@ -213,5 +164,6 @@ fn joint(node: &Node<'_, '_>, remarks: &mut Vec<String>) -> Read<Joint> {
         }
     }
     let origin = origin(node)?;
-    Ok(Joint { name, place: place(node), parent, child: child_link, origin, connection, damping, friction, limits })
+    let plain = Joint::new((name, place(node)), [parent, child_link], (origin, connection));
+    Ok(Joint { damping, friction, limits, ..plain })
 }
