@@ -285,7 +285,7 @@ fn wrong_models() {
         refuses(&folder, &["import", "robot.urdf"], 1, message);
     };
     refused("<robot", "robot.urdf:1:1: isn't XML");
-    refused("<sdf/>", "robot.urdf:1:1: a model of URDF is an element `robot`, and this is `sdf`");
+    refused("<sdf/>", "robot.urdf:1:1: the model has no body with a mass that moves");
     refused("<robot name=\"a\"/>", "robot.urdf:1:1: a model has one link without a parent");
     let link = "<link name=\"a\"/>\n";
     let of = |inner: &str| format!("<robot name=\"a\">\n{inner}</robot>");

@@ -13,6 +13,7 @@ mod import;
 mod joints;
 mod judged;
 mod lagrangian;
+mod models;
 mod mutated;
 mod nonholonomic;
 mod orbits;

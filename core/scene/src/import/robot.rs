@@ -138,6 +138,9 @@ struct Arm {
 /// The group of a link, and the link's frame in that of the group.
 type Place = (usize, Isometry3<f64>);
 
+/// The end of a remark about a body without a mass but for that of meshes.
+pub(super) const NO_MESH: &str = "meshes isn't read, and it has no `inertial`";
+
 /// The radius of a ball whose inertia a link without one gets, m.
 const RADIUS: f64 = 0.01;
 
@@ -168,7 +171,9 @@ impl Robot {
         }
         if !is_there.contains(&true) {
             let place = self.links.first().map_or((1, 1), |link| link.place);
-            return Err((place, "the model has no body with a mass that moves".to_owned()));
+            let meshes = self.remarks.iter().any(|remark| remark.contains(NO_MESH));
+            let why = if meshes { ": masses of meshes aren't read, give its bodies an `inertial`" } else { "" };
+            return Err((place, format!("the model has no body with a mass that moves{why}")));
         }
         self.complete(&mut groups, &is_there);
         let own = groups.iter().map(|group| group.name.as_str());

@@ -60,6 +60,8 @@ pub(super) fn read(root: &Node<'_, '_>) -> Read<Robot> {
     let mut reader = Reader { version: 100 * major + minor, ..Reader::default() };
     reader.robot.has_world = true;
     "robot".clone_into(&mut reader.robot.name);
+    // The format's own default.
+    reader.robot.gravity = Vector3::new(0.0, 0.0, -9.8);
     reader.link(WORLD.to_owned(), place(root), Distribution::NOTHING, true);
     let world = child(root, "world").unwrap_or(*root);
     if let Some(gravity) = child(&world, "gravity") {
@@ -121,24 +123,23 @@ impl<'a, 'd> Reader<'a, 'd> {
     /// Reads the links and frames of a model, whose names begin with `prefix`, and notes its joints.
     fn model(&mut self, node: &Node<'a, 'd>, prefix: &str, is_static: bool) -> Read<()> {
         let own = name(node)?;
-        if prefix.is_empty() && self.robot.links.len() == 1 {
-            self.robot.name.clone_from(&own);
-        }
         if node.has_attribute("placement_frame") {
             return Err((place(node), "a model with a `placement_frame` isn't read: give its `pose`".to_owned()));
         }
         // Names of one model alone are plain.
-        let is_alone = prefix.is_empty()
-            && node
-                .parent()
-                .is_some_and(|around| elements(&around).filter(|other| other.has_tag_name("model")).count() == 1);
+        let around_it = node.parent().filter(|around| !around.has_tag_name("model"));
+        let count = |around: Node<'a, 'd>| elements(&around).filter(|other| other.has_tag_name("model")).count();
+        let is_alone = around_it.is_some_and(|around| count(around) == 1);
+        if around_it.is_some() && self.robot.links.len() == 1 {
+            self.robot.name.clone_from(&own);
+        }
         let inner = if is_alone { String::new() } else { format!("{prefix}{own}::") };
         if inner.matches("::").count() > DEPTH {
             return Err((place(node), format!("models stand in models at most {DEPTH} deep")));
         }
         let is_static = is_static || text(node, "static").is_some_and(|text| matches!(text, "true" | "1"));
         let (pose, base) = posed(node)?;
-        let base = base.map_or_else(|| around(prefix), |base| scoped(prefix, base));
+        let base = scoped(prefix, base.unwrap_or(if around_it.is_some() { WORLD } else { MODEL }));
         self.frames.insert(format!("{inner}{MODEL}"), Frame { base, pose, attached: None });
         let model = format!("{inner}{MODEL}");
         for element in elements(node) {
@@ -407,11 +408,6 @@ impl<'a, 'd> Reader<'a, 'd> {
             ..plain
         })
     }
-}
-
-/// The frame of the model of a prefix.
-fn around(prefix: &str) -> String {
-    if prefix.is_empty() { WORLD.to_owned() } else { format!("{prefix}{MODEL}") }
 }
 
 /// The whole name of a frame of a model.

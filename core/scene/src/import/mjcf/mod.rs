@@ -17,7 +17,7 @@ use self::classes::Classes;
 use self::compiler::Compiler;
 use self::geom::{Weight, weight};
 use super::rigid::Distribution;
-use super::robot::{Connection, Joint, Link, Robot};
+use super::robot::{Connection, Joint, Link, NO_MESH, Robot};
 use super::xml::{Read, elements, finite, number, numbers, place, triple};
 
 /// The name of the root link, which is space.
@@ -166,8 +166,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         let own = parts.inertial.filter(|_| self.compiler.by_shapes != Some(true));
         let own = own.map(|node| self.inertial(&node)).transpose()?;
         if own.is_none() && parts.unread > 0 {
-            let remark =
-                format!("body {name}: the mass of {} meshes isn't read, and it has no `inertial`", parts.unread);
+            let remark = format!("body {name}: the mass of {} {NO_MESH}", parts.unread);
             self.robot.remarks.push(remark);
         }
         let shapes = parts.shapes.filter(|_| self.compiler.by_shapes != Some(false));
