@@ -68,7 +68,9 @@ pub(crate) fn ensemble(given: &ArgMatches, only_tells: bool) -> Result<(), Progr
 fn kept(Report { chunks, missing, outcome, .. }: &Report, folder: &Path) -> String {
     let members = outcome.finished + outcome.left + outcome.stopped + outcome.impossible;
     let (there, folder, again) = (chunks - missing, folder.display(), interrupt::command_line());
-    format!("stopped by Ctrl-C: {there} of {chunks} chunks, with {members} members, are kept in {folder}; `{again}` goes on there")
+    format!(
+        "stopped by Ctrl-C: {there} of {chunks} chunks, with {members} members, are kept in {folder}; `{again}` goes on there"
+    )
 }
 
 fn cannot(path: &Path, error: &dyn std::fmt::Display) -> ProgramFailure {

@@ -41,7 +41,15 @@ impl<M: Integrator> Ensemble<M> {
         }
         self.move_on(&mut waiting, &mut starts, &mut made, is_stopped)?;
         let Tally { rows, outcome } = made;
-        Some(Shard { plan: self.fingerprint(), chunk, members: count, sample, names: self.names.clone(), rows, outcome })
+        Some(Shard {
+            plan: self.fingerprint(),
+            chunk,
+            members: count,
+            sample,
+            names: self.names.clone(),
+            rows,
+            outcome,
+        })
     }
 
     /// Runs the waiting members to their ends, in lanes, and adds their rows and outcomes in their order. `None` after

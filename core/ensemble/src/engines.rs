@@ -17,7 +17,7 @@
 //! dependency and no server. Processes that are done take chunks of other shares with
 //! [`Local::helping`](crate::Local::helping), the last ones first. Both need a folder that all processes share.
 //!
-//! A starting process lists the files, and reads the head of one. At its end it reads the heads of its own files, some
+//! A starting process lists the files, and reads the heads of three. At its end it reads the heads of its own files, some
 //! 1.5 kB each, to sum their outcomes, or those of all files once all chunks exist: one part in 6,000 for 10⁹ members
 //! in 4,097 files of 10 MB. [`Store::verified`](crate::Store::verified) reads every byte, and so checks that nothing
 //! has been damaged since it was written.
@@ -68,6 +68,7 @@
 //!
 //! # Size of chunks
 //!
-//! A kill loses the chunks in progress, and each chunk costs two writes to the disk: a second's work is a good size.
-//! The default is that, by the cost of a step of the method, or less, so that 64 threads have some. A chunk has one
-//! member if members take minutes.
+//! A kill loses the chunks in progress, and each chunk costs two writes to the disk: a second's work is a good size. By
+//! default the first chunks have a few members, and later ones more and more, [up to that](crate::Ensemble::chunks_of). The
+//! number of threads is of no matter, and neither is that of members, so that a folder may grow by more of them. A chunk
+//! has one member if members take minutes.

@@ -2,12 +2,12 @@
 
 use crate::section::LANES;
 
-/// The numbers of members of chunks: `least` in the first ones, twice as many after [`SMALL`](Self::SMALL) chunks of one
-/// size, or after [`LARGE`](Self::LARGE) of a second's work and more, and `most` from there on.
+/// The numbers of members of chunks: `least` in the first ones, twice as many after each [`FEW`](Self::FEW) chunks of one
+/// size, from a part of a second's work on after [`SOME`](Self::SOME), from a second's on after [`MANY`](Self::MANY), and
+/// `most` in the end.
 ///
-/// A member's chunk is the same in each ensemble that has the member, so that more members extend a folder. An ensemble
-/// has at least half of `SMALL` chunks for its workers once the least size allows it, and very many members go to a few
-/// thousand files.
+/// A member's chunk is the same in each ensemble that has the member, so that more members extend a folder. All workers
+/// have some chunks, though an estimate of the work is too low, and very many members go to a few thousand files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Sizes {
     pub(crate) least: u64,
@@ -17,10 +17,11 @@ pub(crate) struct Sizes {
 }
 
 impl Sizes {
-    const SMALL: u64 = 64;
-    const LARGE: u64 = 1024;
-    /// Parts of a second's work in the first chunks, beside which writing a file is cheap.
-    const PARTS: u64 = 256;
+    const FEW: u64 = 16;
+    const SOME: u64 = 64;
+    const MANY: u64 = 1024;
+    /// Parts of a second: one is a work beside which writing a file is cheap.
+    const PARTS: u64 = 32;
 
     /// One size of all chunks.
     pub(crate) fn all_of(members: u64) -> Self {
@@ -30,11 +31,9 @@ impl Sizes {
     /// The sizes for members of which a core moves `second` in a second, and of which one file has `most` at most. Chunks
     /// of lanes fill them if they have enough members.
     pub(crate) fn of_work(second: u64, most: u64, has_lanes: bool) -> Self {
-        let whole = |members: u64| {
-            if has_lanes && members >= LANES as u64 { members - members % LANES as u64 } else { members.max(1) }
-        };
-        let least = (second / Self::PARTS).max(if has_lanes { LANES as u64 } else { 1 });
-        Self { least: whole(least.min(most)), second, most: whole(most) }
+        let lanes = if has_lanes { LANES as u64 } else { 1 };
+        let most = if most >= lanes { most - most % lanes } else { most.max(1) };
+        Self { least: lanes.min(most), second, most }
     }
 
     /// The sizes in order, each with the number of its chunks.
@@ -47,7 +46,12 @@ impl Sizes {
                 return Some((size, u64::MAX));
             }
             next = Some((2 * size).min(self.most));
-            Some((size, if size < self.second { Self::SMALL } else { Self::LARGE }))
+            let count = match size {
+                size if size < self.second / Self::PARTS => Self::FEW,
+                size if size < self.second => Self::SOME,
+                _ => Self::MANY,
+            };
+            Some((size, count))
         })
     }
 

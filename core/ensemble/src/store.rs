@@ -179,7 +179,9 @@ impl Store {
             if let Some(path) = within.iter().find(|path| Name::is_older(path)) {
                 return Err(StoreError::Foreign { path: path.clone() });
             }
-            files.extend(within.into_iter().filter(|path| !path.is_dir()).filter_map(|path| Some((Name::of(&path)?, path))));
+            files.extend(
+                within.into_iter().filter(|path| !path.is_dir()).filter_map(|path| Some((Name::of(&path)?, path))),
+            );
         }
         files.sort();
         Ok(files)
@@ -295,7 +297,9 @@ impl Store {
                 let shard = if is_whole || is_looked_at { Self::shard(path, plan, is_whole)? } else { None };
                 match shard {
                     Some(Ok(_)) if found.contains(chunk) => return Err(StoreError::Twice { path: path.clone() }),
-                    Some(Ok(shard)) if is_looked_at && plan.members(*chunk) > 0 && plan.sample(*chunk) != shard.sample => {
+                    Some(Ok(shard))
+                        if is_looked_at && plan.members(*chunk) > 0 && plan.sample(*chunk) != shard.sample =>
+                    {
                         return Err(StoreError::Foreign { path: path.clone() });
                     }
                     Some(Err(fault)) => {
@@ -394,7 +398,11 @@ impl Store {
     ) -> Result<Option<Result<Shard, Fault>>, StoreError> {
         let opened = File::open(path).and_then(|mut file| {
             let mut bytes = Vec::new();
-            if is_whole { file.read_to_end(&mut bytes)? } else { read_head(&mut file, &mut bytes)? };
+            if is_whole {
+                file.read_to_end(&mut bytes)?
+            } else {
+                read_head(&mut file, &mut bytes)?
+            };
             Ok(Self::shard_of(path, &bytes, is_whole))
         });
         match opened {

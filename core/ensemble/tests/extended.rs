@@ -22,7 +22,8 @@ fn after(name: &str, plan: &dyn Fn(u64) -> Ensemble<Top>, members: &[u64]) -> (B
 #[test]
 fn more_members_go_on_in_a_folder() {
     let in_twenties = |members| tops(members, STEPS);
-    let growing = |members| Ensemble::new("tops", members, 1 << 14, top).keep(["e"], |run| [run.stepper.energy(run.state)]);
+    let growing =
+        |members| Ensemble::new("tops", members, 1 << 14, top).keep(["e"], |run| [run.stepper.energy(run.state)]);
     let one_each = |members| tops(members, 2).chunks_of(1);
     type Plan<'a> = &'a dyn Fn(u64) -> Ensemble<Top>;
     for (plan, members, made) in [

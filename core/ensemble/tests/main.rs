@@ -265,7 +265,8 @@ fn files_of_others_survive() {
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
         std::fs::write(path, name).unwrap();
     }
-    std::fs::write(folder.0.join("00000/00000001-20-cbf29ce484222325cbf29ce484222325.arrow.host-1-0.part"), "half").unwrap();
+    std::fs::write(folder.0.join("00000/00000001-20-cbf29ce484222325cbf29ce484222325.arrow.host-1-0.part"), "half")
+        .unwrap();
     let report = run(&ensemble, &Local::threads(2), &folder);
     assert_eq!((report.made, report.missing, &report.faults), (0, 0, &vec![]));
     let mut found = contents(&folder.0);

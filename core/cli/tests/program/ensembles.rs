@@ -114,7 +114,10 @@ fn more_members_extend_a_folder() {
     of(40, "whole");
     assert!(of(20, "grown").contains("20 members") && of(20, "grown").contains("3 chunks, 0 of them now"));
     let told = of(40, "grown");
-    assert!(told.starts_with("40: ") && told.contains("40 finished") && told.contains("5 chunks, 3 of them now"), "{told}");
+    assert!(
+        told.starts_with("40: ") && told.contains("40 finished") && told.contains("5 chunks, 3 of them now"),
+        "{told}"
+    );
     let [whole, grown] = ["whole", "grown"].map(|out| files(&folder.join(out).join("top.ensemble")));
     assert!(whole == grown && whole.len() == 5);
     let few = |out| of(20, out).lines().skip(1).filter(|line| !line.contains("Written")).collect::<Vec<_>>().join("\n");
@@ -147,8 +150,14 @@ fn control_c_says_what_is_kept() {
     let output = run.wait_with_output().unwrap();
     let (told, there) = (String::from_utf8(output.stderr).unwrap(), files(&inside).len());
     assert_eq!(output.status.code(), Some(130), "{told}");
-    let kept = format!("stopped by Ctrl-C: {there} of 125000 chunks, with {} members, are kept in out/a top.ensemble", 8 * there);
-    assert!(told.contains(&kept) && told.trim_end().ends_with(" ensemble 'a top.toml' --threads 2` goes on there"), "{told}");
+    let kept = format!(
+        "stopped by Ctrl-C: {there} of 125000 chunks, with {} members, are kept in out/a top.ensemble",
+        8 * there
+    );
+    assert!(
+        told.contains(&kept) && told.trim_end().ends_with(" ensemble 'a top.toml' --threads 2` goes on there"),
+        "{told}"
+    );
     // The shell reads the command; with fewer members there is an end of it.
     let members = 8 * (there + 2);
     fs::write(folder.join("a top.toml"), text.replace("members = 40", &format!("members = {members}"))).unwrap();

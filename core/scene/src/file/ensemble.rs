@@ -142,7 +142,7 @@ fn of_columns(ensemble: &SceneEnsemble, scene: &Scene, at: &dyn Fn(&[&str]) -> R
     }
     let names: Vec<&str> = columns.iter().flat_map(Column::names).collect();
     if let Some(one) = ensemble.histograms.iter().find(|one| !names.contains(&one.column.as_str())) {
-        let message = format!("the `columns` of the ensemble have no `{}`, but {}", one.column, names.join(", "));
+        let message = format!("the `columns` of the file have no `{}`, but {}", one.column, names.join(", "));
         return Some((one.span.clone(), message));
     }
     let Parts { events, changes, first, is_limited } = Parts::of(scene);
