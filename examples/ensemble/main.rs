@@ -4,7 +4,7 @@
 //! ```text
 //! cargo run --release -p liestep-examples --example ensemble
 //! cargo run --release -p liestep-examples --example ensemble -- --quick
-//! cargo run --release -p liestep-examples --example ensemble -- --shard 2/8 --out shared     one task of an array; the last draws
+//! cargo run --release -p liestep-examples --example ensemble -- --share 2/8 --out shared     one task of an array; the last draws
 //! ```
 //!
 //! An interrupted run is resumed by the next one. The folders `satellite`, `map` and `section` have the files; polars
@@ -34,7 +34,7 @@ const HELP: &str =
 Options:
       --quick        A few hundred members, in the place of some thousands
       --threads <N>  So many threads; 0 for as many as there are cores [default: 0]
-      --shard <I/N>  Only this share of the chunks, from 0/N on; the run that makes the last of them draws
+      --share <I/N>  Only this share of the chunks, from 0/N on; the run that makes the last of them draws
       --out <DIR>    The folder for files and figures [default: out/ensemble]
   -h, --help         Print this
 ";
@@ -57,7 +57,7 @@ fn main() -> ExitCode {
                     let threads = text.parse().map_err(|_| format!("'{text}' for '--threads' isn't a number"))?;
                     arguments.threads = threads;
                 }
-                "shard" => arguments.share = share_of(&words.text()?)?,
+                "share" => arguments.share = share_of(&words.text()?)?,
                 "out" => arguments.out = words.folder()?,
                 _ => return Err(words.unknown()),
             }

@@ -61,7 +61,7 @@ impl Grid {
     pub(crate) fn exponents(&self, ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<Option<f64>>, Mistake> {
         let ends = usize::try_from(2 * self.tilts * self.spins)?;
         let (mut first, mut last) = (vec![[f64::NAN; 6]; ends], vec![[f64::NAN; 6]; ends]);
-        for shard in store.shards(ensemble.fingerprint())? {
+        for shard in ensemble.shards(store)? {
             let rows = shard.map_err(|fault| fault.to_string())?.rows;
             for (row, member) in rows.member.iter().enumerate() {
                 let values = [0, 1, 2, 3, 4, 5].map(|column| rows.columns[column][row]);

@@ -57,7 +57,7 @@ pub(crate) fn spread(ensemble: &Ensemble<Satellite>, store: &Store) -> Result<Ve
         axes.push(pointing(&nominal));
     }
     angles.resize(axes.len(), Vec::new());
-    for shard in store.shards(ensemble.fingerprint())? {
+    for shard in ensemble.shards(store)? {
         let rows = shard.map_err(|fault| fault.to_string())?.rows;
         for (row, step) in rows.step.iter().enumerate() {
             let time = usize::try_from(step / EVERY)?;

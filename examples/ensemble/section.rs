@@ -84,7 +84,7 @@ pub(crate) struct Orbit {
 /// The crossings and the energy error of each member.
 pub(crate) fn crossings(ensemble: &Ensemble<Top>, store: &Store) -> Result<Vec<Orbit>, Mistake> {
     let mut found = Vec::new();
-    for shard in store.shards(ensemble.fingerprint())? {
+    for shard in ensemble.shards(store)? {
         let rows = shard.map_err(|fault| fault.to_string())?.rows;
         let first = found.len();
         found.extend(rows.columns[0].iter().map(|energy| Orbit { off: energy - ENERGY, points: Vec::new() }));

@@ -16,7 +16,8 @@ Exit codes:
   1  a file can't be read or is wrong; the message has its line and column
   2  the command line is wrong
   3  a run stopped: a step or a start that isn't possible; of an ensemble, members broke down
-  4  a result can't be written or printed";
+  4  a result can't be written or printed
+  130  Ctrl-C has stopped an ensemble, which keeps its finished files; the message has the command that goes on";
 
 pub(crate) fn command() -> Command {
     let scenes = || files("The scene files");
@@ -35,19 +36,19 @@ pub(crate) fn command() -> Command {
                 .arg(scenes())
                 .arg(out())
                 .arg(flag("csv", "Also write a table as CSV, while it runs"))
-                .arg(flag("arrow", "Also write the table as a stream of Arrow IPC, .arrows, while it runs"))
+                .arg(flag("arrow", "Also write the table as a stream of Arrow IPC, .arrows, while it runs; in Python pyarrow.ipc.open_stream(path).read_pandas() reads it"))
                 .arg(flag("html", "Also write a page that plays the motion, to be opened in a browser")),
         )
         .subcommand(Command::new("check").about("Reads scenes and makes their first step").arg(scenes()))
         .subcommand(
             Command::new("sweep")
-                .about("Runs every scene of a file's table `sweep`, and writes a row of FILE.sweep.csv for each")
+                .about("Runs every scene of a file's table `sweep`, and prints a row of FILE.sweep.csv for each")
                 .arg(scenes())
                 .arg(out()),
         )
         .subcommand(
             Command::new("ensemble")
-                .about("Runs the members that a file's table `ensemble` draws, and keeps them in files of Arrow IPC in the folder FILE.ensemble; stopped at any moment, the next run goes on")
+                .about("Runs the members that a file's table `ensemble` draws, and keeps them in files of Arrow IPC in the folder FILE.ensemble; stopped at any moment, or with more `members`, the next run goes on")
                 .arg(scenes())
                 .arg(
                     Arg::new("threads")
@@ -58,8 +59,8 @@ pub(crate) fn command() -> Command {
                         .value_parser(value_parser!(usize)),
                 )
                 .arg(
-                    Arg::new("shard")
-                        .long("shard")
+                    Arg::new("share")
+                        .long("share")
                         .value_name("I/N")
                         .help("Only this share of the members, from 0/N on: for an array of jobs, which write to one folder")
                         .value_parser(share_of),

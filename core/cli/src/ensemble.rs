@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use clap::ArgMatches;
@@ -12,6 +12,7 @@ use liestep_scene::{Column, EndHistogram, Mistake, Scene, SceneEnsemble, Spread,
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
+use crate::interrupt;
 use crate::members::{Scenes, number};
 use crate::output::{Progress, print};
 use crate::tally::{bars, counts, of_event};
@@ -23,11 +24,15 @@ pub(crate) fn ensemble(given: &ArgMatches, only_tells: bool) -> Result<(), Progr
     let (threads, (share, shares)) = if only_tells {
         (1, (0, 1))
     } else {
-        let share = given.get_one::<(u64, u64)>("shard").copied();
+        let share = given.get_one::<(u64, u64)>("share").copied();
         (given.get_one::<usize>("threads").copied().unwrap_or_default(), share.unwrap_or((0, 1)))
     };
     // A run that is stopped from the start simulates nothing.
-    let stop = AtomicBool::new(only_tells);
+    let stop = Arc::new(AtomicBool::new(only_tells));
+    if !only_tells {
+        // Without a signal's handler Ctrl-C ends the program, and finished files are kept all the same.
+        let _ = interrupt::sets(&stop);
+    }
     if let Some((path, _)) = paths.iter().zip(&scenes).find(|(_, scene)| scene.ensemble().is_none()) {
         return Err(Mistake::no_table(path, "ensemble").into());
     }
@@ -45,9 +50,12 @@ pub(crate) fn ensemble(given: &ArgMatches, only_tells: bool) -> Result<(), Progr
         }
         let store = Store::folder(&folder).map_err(|error| cannot(path, &error))?;
         let store = if given.get_flag("verify") { store.verified() } else { store };
-        let [broken, left] = made(path, scene, drawn, (&local, shares > 1), (&store, &folder))?;
-        stopped += broken;
-        missing += left;
+        let report = made(path, scene, drawn, (&local, shares > 1), (&store, &folder))?;
+        stopped += report.outcome.stopped;
+        missing += report.missing;
+        if !only_tells && missing > 0 && stop.load(Ordering::Relaxed) {
+            return Err(ProgramFailure::Stopped(kept(&report, &folder)));
+        }
     }
     if missing > 0 {
         let by = if only_tells { "`liestep ensemble`" } else { "other shares" };
@@ -56,19 +64,28 @@ pub(crate) fn ensemble(given: &ArgMatches, only_tells: bool) -> Result<(), Progr
     if stopped == 0 { Ok(()) } else { Err(ProgramFailure::Runs(format!("{stopped} members broke down"))) }
 }
 
+/// The message of a run that Ctrl-C has stopped: what is kept, and the command that goes on.
+fn kept(Report { chunks, missing, outcome, .. }: &Report, folder: &Path) -> String {
+    let members = outcome.finished + outcome.left + outcome.stopped + outcome.impossible;
+    let (there, folder, again) = (chunks - missing, folder.display(), interrupt::command_line());
+    format!(
+        "stopped by Ctrl-C: {there} of {chunks} chunks, with {members} members, are kept in {folder}; `{again}` goes on there"
+    )
+}
+
 fn cannot(path: &Path, error: &dyn std::fmt::Display) -> ProgramFailure {
     ProgramFailure::Output(format!("{}: {error}", path.display()))
 }
 
 /// Simulates a folder's missing chunks, and prints a report, of this share while chunks are missing. Stored rows aren't
-/// read. Returns the numbers of failed members and of missing chunks.
+/// read.
 fn made(
     path: &Path,
     scene: &Scene,
     drawn: &SceneEnsemble,
     local: (&Local<'_>, bool),
     store: (&Store, &Path),
-) -> Result<[u64; 2], ProgramFailure> {
+) -> Result<Report, ProgramFailure> {
     let steps = scene.steps().unwrap_or_default();
     let failed = |mistake: Mistake| Failure::Other(mistake.to_string());
     let drawn_of = |own: &SceneEnsemble, member: &Member<'_>| {
@@ -78,17 +95,12 @@ fn made(
         let own = drawn.clone();
         let make =
             move |member: &Member<'_>| drawn_of(&own, member).and_then(|scene| scene.in_lanes(&whole)).map_err(failed);
-        // Chunks are whole lanes: a 64th of the members, at most a second's work but at least a 4096th of the members, and at
-        // most a million rows.
-        let rows = drawn.every.map_or(1, |every| steps / every + 2);
-        let share = drawn.members.div_ceil(64).min((1 << 24) / steps.max(1)).max(drawn.members >> 12);
-        let chunk = share.min((1 << 20) / rows).next_multiple_of(8).max(8);
-        let members = Ensemble::abreast(&drawn.text, drawn.members, steps, make).chunks_of(chunk);
+        let members = Ensemble::abreast(&drawn.identity, drawn.members, steps, make);
         return finished(path, scene, drawn, members, local, store);
     }
     let own = drawn.clone();
     let make = move |member: &Member<'_>| drawn_of(&own, member).and_then(|scene| scene.stepper()).map_err(failed);
-    finished(path, scene, drawn, Ensemble::one_by_one(&drawn.text, drawn.members, steps, make), local, store)
+    finished(path, scene, drawn, Ensemble::one_by_one(&drawn.identity, drawn.members, steps, make), local, store)
 }
 
 /// Simulates the chunks of members, in lanes or one by one, and prints their outcome.
@@ -99,7 +111,7 @@ fn finished(
     members: Ensemble<AnyStepper>,
     (local, is_share): (&Local<'_>, bool),
     (store, folder): (&Store, &Path),
-) -> Result<[u64; 2], ProgramFailure> {
+) -> Result<Report, ProgramFailure> {
     let plan = plan(scene, drawn, members);
     let progress = Mutex::new(Progress::new());
     let told = |now: liestep_ensemble::Progress| {
@@ -110,7 +122,7 @@ fn finished(
     let report = plan.run_telling(local, store, &told).map_err(|error| cannot(path, &error))?;
     drop(progress);
     for fault in &report.faults {
-        eprintln!("note: {fault}; it is set aside, and made anew");
+        eprintln!("note: {fault}; it is set aside, and `liestep ensemble` makes it anew");
     }
     let (unmade, stopped): (Vec<_>, Vec<_>) = report.outcome.failures.iter().partition(|failed| !failed.was_made);
     if let Some(MemberFailure { member, failure, .. }) = unmade.first() {
@@ -121,10 +133,10 @@ fn finished(
     }
     let is_share = is_share && report.missing > 0;
     print(&told_of(scene, drawn, &report, (is_share, &folder.display().to_string())))?;
-    Ok([report.outcome.stopped, report.missing])
+    Ok(report)
 }
 
-/// The plan of an ensemble. The file's text identifies it.
+/// The plan of an ensemble, which the file's values identify.
 fn plan(scene: &Scene, drawn: &SceneEnsemble, members: Ensemble<AnyStepper>) -> Ensemble<AnyStepper> {
     let mut plan = members.seed(drawn.seed);
     if let Some(every) = drawn.every {
@@ -133,12 +145,12 @@ fn plan(scene: &Scene, drawn: &SceneEnsemble, members: Ensemble<AnyStepper>) -> 
     if let Some(members) = drawn.chunk {
         plan = plan.chunks_of(members);
     }
-    let names: Vec<_> = columns(scene).map(|(_, _, name)| name).collect();
+    let names: Vec<_> = columns(drawn).map(|(_, _, name)| name).collect();
     let own = Scenes::new(scene, drawn);
     plan = plan.keep_named(&names, {
-        let own = Arc::clone(&own);
+        let (own, kept) = (Arc::clone(&own), drawn.columns.clone());
         move |run, row| {
-            let numbers = own.numbers(run, own.file().columns());
+            let numbers = own.numbers(run, &kept);
             row.iter_mut().zip(numbers).for_each(|(place, number)| *place = number);
         }
     });
@@ -152,21 +164,21 @@ fn plan(scene: &Scene, drawn: &SceneEnsemble, members: Ensemble<AnyStepper>) -> 
         }
     });
     // A quaternion and its opposite are the same attitude, so means of them have no meaning.
-    for (column, place, name) in columns(scene).filter(|(.., name)| !name.starts_with("q_")) {
+    for (column, place, name) in columns(drawn).filter(|(.., name)| !name.starts_with("q_")) {
         let own = Arc::clone(&own);
         plan = plan.reduce(name, Reduction::Moments, move |run| {
             own.numbers(run, std::slice::from_ref(&column)).get(place).copied().unwrap_or(f64::NAN)
         });
     }
     for EndHistogram { column: name, range, parts, .. } in &drawn.histograms {
-        let Some((column, place, _)) = columns(scene).find(|(.., own)| own == name) else { continue };
+        let Some((column, place, _)) = columns(drawn).find(|(.., own)| own == name) else { continue };
         let (own, kind) = (Arc::clone(&own), Reduction::Histogram { range: range.clone(), bins: *parts });
         plan = plan.reduce(&name_of(name), kind, move |run| {
             own.numbers(run, std::slice::from_ref(&column)).get(place).copied().unwrap_or(f64::NAN)
         });
     }
     let plan = plan.keep(["t"], |run| [run.stepper.time(run.state)]);
-    scene.events().zip(scene.watches()).fold(plan, |plan, event| plan.section(section(&own, event)))
+    scene.events().zip(scene.watches()).fold(plan, |plan, event| plan.section(section(&own, drawn, event)))
 }
 
 /// The name of a column's histogram beside its moments.
@@ -174,13 +186,13 @@ fn name_of(column: &str) -> String {
     format!("{column} (histogram)")
 }
 
-/// The section of an event: its times, and the scene's columns then.
-fn section(scenes: &Arc<Scenes>, (name, watch): (&str, Watch)) -> Section<AnyStepper> {
+/// The section of an event: its times, and the members' columns then.
+fn section(scenes: &Arc<Scenes>, drawn: &SceneEnsemble, (name, watch): (&str, Watch)) -> Section<AnyStepper> {
     let Watch { event, function, stops, .. } = watch;
     let section = Section::new(event, function);
     let section = if stops { section.until() } else { section };
     let section = section.keep([&format!("{name}_t")], |now| [now.time()]);
-    columns(scenes.file()).fold(section, |section, (column, place, own)| {
+    columns(drawn).fold(section, |section, (column, place, own)| {
         let scenes = Arc::clone(scenes);
         section.keep([&format!("{name}_{own}")], move |now| {
             [scenes.file().numbers(std::slice::from_ref(&column), now).get(place).copied().unwrap_or(f64::NAN)]
@@ -188,10 +200,10 @@ fn section(scenes: &Arc<Scenes>, (name, watch): (&str, Watch)) -> Section<AnySte
     })
 }
 
-/// The numbers of the scene's columns: each with its column, its place there and its name.
-fn columns(scene: &Scene) -> impl Iterator<Item = (Column, usize, &str)> {
+/// The numbers of the members' columns: each with its column, its place there and its name.
+fn columns(drawn: &SceneEnsemble) -> impl Iterator<Item = (Column, usize, &str)> {
     let numbers = |column| Column::names(column).enumerate().map(|(place, name)| (Column::clone(column), place, name));
-    scene.columns().iter().flat_map(numbers)
+    drawn.columns.iter().flat_map(numbers)
 }
 
 fn told_of(scene: &Scene, drawn: &SceneEnsemble, report: &Report, (is_share, folder): (bool, &str)) -> String {
@@ -206,7 +218,7 @@ fn told_of(scene: &Scene, drawn: &SceneEnsemble, report: &Report, (is_share, fol
     if is_whole && report.outcome.finished > 0 {
         let _ =
             writeln!(text, "  {:<20}{:>16}{:>16}{:>16}{:>16}", "at the end", "mean", "deviation", "least", "largest");
-        for (_, _, name) in columns(scene) {
+        for (_, _, name) in columns(drawn) {
             if let Some(Summary::Moments(moments)) = report.reduced(name) {
                 let spread = moments.variance().sqrt();
                 let [mean, least, largest] = [moments.mean, moments.least, moments.largest];

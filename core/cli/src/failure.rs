@@ -16,6 +16,8 @@ pub(crate) enum Failure {
     Runs(String),
     /// 4: a result couldn't be written or printed.
     Output(String),
+    /// 130: Ctrl-C has stopped it.
+    Stopped(String),
 }
 
 impl Failure {
@@ -26,6 +28,7 @@ impl Failure {
             Self::Scene(mistake) if mistake.kind() == Kind::Table => 4,
             Self::Scene(_) | Self::Runs(_) => 3,
             Self::Output(_) => 4,
+            Self::Stopped(_) => 130,
         })
     }
 }
@@ -46,7 +49,9 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Scene(mistake) => mistake.fmt(f),
-            Self::Command(message) | Self::Runs(message) | Self::Output(message) => f.write_str(message),
+            Self::Command(message) | Self::Runs(message) | Self::Output(message) | Self::Stopped(message) => {
+                f.write_str(message)
+            }
         }
     }
 }

@@ -12,9 +12,11 @@ mod ensemble;
 mod failure;
 mod files;
 mod fmu;
+mod interrupt;
 mod members;
 mod output;
 mod sweep;
+mod table;
 mod tally;
 
 use std::path::Path;

@@ -13,6 +13,7 @@ use liestep_scene::{Mistake, Scene, Sweep};
 use crate::failure::Failure;
 use crate::files::{different_files, folder, name};
 use crate::output::print;
+use crate::table::{digits, printed};
 
 pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
     let paths = different_files(given)?;
@@ -29,21 +30,26 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
     if stopped == 0 { Ok(()) } else { Err(Failure::Runs(format!("{stopped} scenes of the sweep stopped"))) }
 }
 
-/// Writes the table of a sweep; returns how many of its scenes stopped.
+/// Writes the table of a sweep and prints it; returns how many of its scenes stopped.
 fn rows(path: &Path, sweep: &Sweep<Scene>, output: &mut Output) -> Result<usize, Failure> {
     // Another name than the table of a run.
     let name = name(path, "sweep.csv");
     let (mut file, mut stopped) = (output.grows(&name), 0);
     let points = &sweep.points;
     let ends = points.first().map(|(_, scene)| scene.end_names()).unwrap_or_default();
-    file.add(&format!("{}\n", sweep.names.iter().chain(&ends).map(String::as_str).collect::<Vec<_>>().join(",")))?;
+    let head: Vec<&str> = sweep.names.iter().chain(&ends).map(String::as_str).collect();
+    file.add(&format!("{}\n", head.join(",")))?;
+    let mut table = Vec::new();
     in_order(
         points,
         |(_, scene): &(Vec<String>, Scene)| scene.run().map(|run| scene.end(&run)),
         |(values, _), end| {
-            let mut row = values.join(",");
+            let (mut row, mut cells) = (values.join(","), values.clone());
             match end {
-                Ok(end) => row.extend(end.iter().map(|value| format!(",{value:?}"))),
+                Ok(end) => {
+                    row.extend(end.iter().map(|value| format!(",{value:?}")));
+                    cells.extend(end.iter().map(|value| digits(*value)));
+                }
                 Err(mistake) => {
                     stopped += 1;
                     row.push_str(&",".repeat(ends.len()));
@@ -53,11 +59,13 @@ fn rows(path: &Path, sweep: &Sweep<Scene>, output: &mut Output) -> Result<usize,
                 }
             }
             row.push('\n');
+            table.push(cells);
             Ok(file.add(&row)?)
         },
     )?;
     drop(file);
     output.grown(&name)?;
+    print(&printed(&head, &table, &name))?;
     Ok(stopped)
 }
 

@@ -5,4 +5,4 @@
 set -eu
 # One for each number of the whole array. Slurm's own count is that of the tasks that are submitted together.
 SHARES=4
-exec "$ENSEMBLE" --quick --threads "${SLURM_CPUS_PER_TASK:-2}" --out "$OUT" --shard "$SLURM_ARRAY_TASK_ID/$SHARES"
+exec "$ENSEMBLE" --quick --threads "${SLURM_CPUS_PER_TASK:-2}" --out "$OUT" --share "$SLURM_ARRAY_TASK_ID/$SHARES"

@@ -14,7 +14,7 @@ program = os.environ["ENSEMBLE"]
 
 
 def make(share):
-    command = [program, "--quick", "--threads", "1", "--out", out, "--shard", f"{share}/{shares}"]
+    command = [program, "--quick", "--threads", "1", "--out", out, "--share", f"{share}/{shares}"]
     return subprocess.run(command, check=True, stdout=subprocess.DEVNULL).returncode
 
 

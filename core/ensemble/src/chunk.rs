@@ -13,19 +13,16 @@ use crate::shard::{Crossings, Rows, Shard, Status};
 
 impl<M: Integrator> Ensemble<M> {
     pub(crate) fn range(&self, chunk: u64) -> Range<u64> {
-        let size = self.members_of_chunk();
-        chunk * size..((chunk + 1) * size).min(self.members)
+        let end = |chunk: u64| self.sizes().first(chunk).min(self.members);
+        end(chunk)..end(chunk.saturating_add(1))
     }
 
     /// The recorded rows and the outcome of a chunk, a function of the plan and the number. `None` after a request to
     /// stop; `is_stopped` is called between members and after each [piece](Self::PIECE) of their steps, with sections
     /// after each step.
     pub fn chunk(&self, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
-        self.shard(self.fingerprint(), chunk, is_stopped)
-    }
-
-    pub(crate) fn shard(&self, plan: u64, chunk: u64, is_stopped: &dyn Fn() -> bool) -> Option<Shard> {
         let members = self.range(chunk);
+        let (sample, count) = (self.sample(chunk), members.end - members.start);
         let mut made = Tally { rows: self.no_rows(), outcome: self.nothing() };
         // Members that can't be constructed are set apart first, so that they leave no lane empty.
         let mut waiting: Vec<(u64, Option<MemberFailure>)> = Vec::new();
@@ -43,7 +40,16 @@ impl<M: Integrator> Ensemble<M> {
             }
         }
         self.move_on(&mut waiting, &mut starts, &mut made, is_stopped)?;
-        Some(Shard { plan, chunk, names: self.names.clone(), rows: made.rows, outcome: made.outcome })
+        let Tally { rows, outcome } = made;
+        Some(Shard {
+            plan: self.fingerprint(),
+            chunk,
+            members: count,
+            sample,
+            names: self.names.clone(),
+            rows,
+            outcome,
+        })
     }
 
     /// Runs the waiting members to their ends, in lanes, and adds their rows and outcomes in their order. `None` after

@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | one machine | [`Local::threads`](crate::Local::threads) | the next run goes on from the shards that are there |
 //! | a cluster with MPI | `liestep-ensemble-mpi`, in `core/ensemble/mpi` | MPI ends the job; the next run goes on |
-//! | arrays of jobs (Slurm, Kubernetes, GNU parallel), anything else that starts programs | [`Local::share`](crate::Local::share) behind an option `--shard i/n` | the scheduler starts that share again |
+//! | arrays of jobs (Slurm, Kubernetes, GNU parallel), anything else that starts programs | [`Local::share`](crate::Local::share) behind an option `--share i/n` | the scheduler starts that share again |
 //! | another scheduler to be written for | [`Engine`](crate::Engine), or [`Ensemble::chunk`](crate::Ensemble::chunk) and [`Store::write`](crate::Store::write) | its own matter |
 //!
 //! `core/ensemble/mpi/run` compares the files of threads, of 1 to 4 processes of MPI, of a share by threads with the
@@ -17,28 +17,28 @@
 //! dependency and no server. Processes that are done take chunks of other shares with
 //! [`Local::helping`](crate::Local::helping), the last ones first. Both need a folder that all processes share.
 //!
-//! A starting process lists the files, and reads the head of one. At its end it reads the heads of its own files, some
+//! A starting process lists the files, and reads the heads of three. At its end it reads the heads of its own files, some
 //! 1.5 kB each, to sum their outcomes, or those of all files once all chunks exist: one part in 6,000 for 10⁹ members
 //! in 4,097 files of 10 MB. [`Store::verified`](crate::Store::verified) reads every byte, and so checks that nothing
 //! has been damaged since it was written.
 //!
 //! # Shares
 //!
-//! A program that reads `--shard` by [`share_of`](crate::share_of), as the example `ensemble` does, runs as an array of
+//! A program that reads `--share` by [`share_of`](crate::share_of), as the example `ensemble` does, runs as an array of
 //! jobs of Slurm:
 //!
 //! ```text
 //! #!/bin/bash
 //! #SBATCH --array=0-31
 //! #SBATCH --cpus-per-task=8
-//! srun ./ensemble --shard "$SLURM_ARRAY_TASK_ID/32" --threads 8 --out /shared/out
+//! srun ./ensemble --share "$SLURM_ARRAY_TASK_ID/32" --threads 8 --out /shared/out
 //! ```
 //!
 //! A part of the array may be submitted again (`--array=3`). Write the number of shares, and not
 //! `SLURM_ARRAY_TASK_COUNT`, which counts the tasks that are submitted together.
 //!
 //! The program also runs as an indexed job of Kubernetes, `core/ensemble/elsewhere/kubernetes.yaml`, or, on machines
-//! without a scheduler, by `seq 0 31 | parallel ./ensemble --shard {}/32 --out /shared/out`.
+//! without a scheduler, by `seq 0 31 | parallel ./ensemble --share {}/32 --out /shared/out`.
 //!
 //! # Dask and Ray
 //!
@@ -46,7 +46,7 @@
 //!
 //! ```python
 //! def make(share):
-//!     subprocess.run(["./ensemble", "--shard", f"{share}/32", "--out", "/shared/out"], check=True)
+//!     subprocess.run(["./ensemble", "--share", f"{share}/32", "--out", "/shared/out"], check=True)
 //!
 //! client.gather(client.map(make, range(32), retries=3))               # dask.distributed
 //!
@@ -68,6 +68,7 @@
 //!
 //! # Size of chunks
 //!
-//! A kill loses the chunks in progress, and each chunk costs two writes to the disk: a second's work is a good size.
-//! The default is that, by the cost of a step of the method, or less, so that 64 threads have some. A chunk has one
-//! member if members take minutes.
+//! A kill loses the chunks in progress, and each chunk costs two writes to the disk: a second's work is a good size. By
+//! default the first chunks have a few members, and later ones more and more, [up to that](crate::Ensemble::chunks_of). The
+//! number of threads is of no matter, and neither is that of members, so that a folder may grow by more of them. A chunk
+//! has one member if members take minutes.

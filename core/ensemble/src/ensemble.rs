@@ -10,7 +10,8 @@ use crate::draw::Member;
 use crate::group::{Grouping, Start, abreast, in_lanes, one_by_one};
 use crate::outcome::{Outcome, Passages};
 use crate::reduce::{Moments, Reduction};
-use crate::section::{LANES, Section};
+use crate::section::Section;
+use crate::sizes::Sizes;
 use crate::{Failure, Table};
 use liestep::numbers::Digest;
 
@@ -51,7 +52,7 @@ pub struct Ensemble<M: Integrator> {
     pub(crate) reductions: Vec<(String, Reduction, Box<Value<M>>)>,
     pub(crate) sections: Vec<Section<M>>,
     fingerprint: OnceLock<u64>,
-    size: OnceLock<u64>,
+    sizes: OnceLock<Sizes>,
 }
 
 impl Ensemble<AnyStepper> {
@@ -77,7 +78,7 @@ impl<M: Integrator> Ensemble<M> {
     ///
     /// The name distinguishes ensembles in the files. `make` constructs a member's stepper and initial state, or says
     /// why there are none; it must be deterministic. After a change of `make`, choose another name or folder: the
-    /// [fingerprint](Self::fingerprint) samples three members only.
+    /// [fingerprint](Self::fingerprint) and a run sample four members only.
     ///
     /// Lanes need scenes that are generic over their scalar, as the library's are: `Top<f64>` here, declared as
     /// `Top<T>`. The methods with lanes are [`Stepper::new`](liestep::Stepper::new),
@@ -126,13 +127,13 @@ impl<M: Integrator> Ensemble<M> {
             reductions: Vec::new(),
             sections: Vec::new(),
             fingerprint: OnceLock::new(),
-            size: OnceLock::new(),
+            sizes: OnceLock::new(),
         }
     }
 
     /// Clears results that depend on the plan.
     fn changed(self) -> Self {
-        Self { fingerprint: OnceLock::new(), size: OnceLock::new(), ..self }
+        Self { fingerprint: OnceLock::new(), sizes: OnceLock::new(), ..self }
     }
 
     /// Sets the seed from which members draw their numbers; the default is zero.
@@ -166,9 +167,10 @@ impl<M: Integrator> Ensemble<M> {
 
     /// Sets the number of members of a chunk, the unit of work of one worker and the content of one file.
     ///
-    /// The default is about a second's work of one core by the [cost](Integrator::cost) of a step of the method, or a
-    /// 64th of the members, so that all cores and all shares have some, and at most a million rows unless one member
-    /// has more. Like the plan, it is the same on every machine.
+    /// By default chunks grow: the first have as many members as lanes, or one, and their size doubles after 16 chunks; from
+    /// a 32nd of a second's work of one core on, by the [cost](Integrator::cost) of a step of the method, after 64; from a
+    /// second's work on after 1024; up to a million rows. So all cores and all shares have some, and very many members go
+    /// to a few thousand files. A member is in the same chunk on every machine, and whatever the number of members.
     ///
     /// # Panics
     ///
@@ -253,53 +255,37 @@ impl<M: Integrator> Ensemble<M> {
     /// The number of chunks.
     #[must_use]
     pub fn chunks(&self) -> u64 {
-        self.members.div_ceil(self.members_of_chunk())
+        self.sizes().chunks(self.members)
     }
 
-    pub(crate) fn members_of_chunk(&self) -> u64 {
-        self.chunk.unwrap_or_else(|| *self.size.get_or_init(|| self.usual_chunk()))
+    pub(crate) fn sizes(&self) -> Sizes {
+        *self.sizes.get_or_init(|| self.chunk.map_or_else(|| self.usual_sizes(), Sizes::all_of))
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // an estimate
-    fn usual_chunk(&self) -> u64 {
+    fn usual_sizes(&self) -> Sizes {
         // Steps of (3.13) that a core computes in a second, in lanes and one by one, and the cost of one such step.
         const STEPS: [f64; 2] = [33_554_432.0, 4_194_304.0];
         const OF_A_STEP: f64 = 448.0;
         const ROWS: u64 = 1 << 20;
-        const CHUNKS: u64 = 64;
-        let cost = self.looked_at().into_iter().find_map(|member| {
-            let (stepper, _) = (self.make)(&self.member(member)).ok()?;
-            Some(stepper.cost().map_or(OF_A_STEP, |cost| cost.least()))
-        });
-        let ratio = OF_A_STEP / cost.unwrap_or(OF_A_STEP).max(1.0);
+        let cost = (self.make)(&self.member(0)).ok().and_then(|(stepper, _)| stepper.cost());
+        let ratio = OF_A_STEP / cost.map_or(OF_A_STEP, |cost| cost.least()).max(1.0);
         let second = (STEPS[usize::from(self.takes_turns)] * ratio / self.steps.max(1) as f64) as u64;
-        // Chunks are for 64 workers, and in lanes take at least a 32nd of a second each, beside which a file is cheap.
-        let least = if self.takes_turns { 1 } else { (second / 32).max(LANES as u64) };
-        let shared = self.members.div_ceil(CHUNKS).max(least).min(second);
-        // Very many members go to a few thousand files.
-        let most = (self.members >> 12).clamp(1 << 16, ROWS);
         let rows = self.every.map_or(1, |every| self.steps / every + 2);
-        let members = shared.max(self.members >> 12).min(ROWS / rows.min(ROWS)).clamp(1, most);
-        // Chunks fill whole lanes if there are enough members.
-        if self.takes_turns || members < LANES as u64 { members } else { members - members % LANES as u64 }
+        Sizes::of_work(second, ROWS / rows.min(ROWS), !self.takes_turns)
     }
 
     pub(crate) fn member(&self, number: u64) -> Member<'_> {
         Member { number, seed: self.seed, table: self.table.as_ref() }
     }
 
-    /// A digest of the plan: all its numbers and names, its table, and the recorded values of three members at the
-    /// start and after a piece, since functions can't be compared.
+    /// A digest of the plan: all its numbers and names but the number of members, its table, and the recorded values of
+    /// the first member at the start and after a piece, since functions can't be compared.
+    ///
+    /// An ensemble of more members is the same plan, and [runs](Self::run) on in the folder of one of fewer.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
         *self.fingerprint.get_or_init(|| self.print())
-    }
-
-    /// The sampled members: first, middle and last.
-    fn looked_at(&self) -> Vec<u64> {
-        let mut looked_at = vec![0, self.members / 2, self.members.saturating_sub(1)];
-        looked_at.dedup();
-        looked_at
     }
 
     fn print(&self) -> u64 {
@@ -307,7 +293,8 @@ impl<M: Integrator> Ensemble<M> {
         digest.text(&self.name);
         let table = self.table.as_ref().map_or(0, Table::digest);
         let every = self.every.unwrap_or(0);
-        for number in [self.members, self.steps, self.seed, every, self.members_of_chunk(), table] {
+        let Sizes { least, second, most } = self.sizes();
+        for number in [self.steps, self.seed, every, least, second, most, table] {
             digest.number(number);
         }
         self.names.iter().for_each(|name| digest.text(name));
@@ -316,14 +303,22 @@ impl<M: Integrator> Ensemble<M> {
             digest.text(&format!("{reduction:?}"));
         }
         self.sections.iter().for_each(|section| section.describe(&mut digest));
-        for member in self.looked_at() {
-            self.look_at(member, &mut digest);
-        }
+        self.look_at(0, &mut digest);
         digest.value()
     }
 
-    /// Adds a member's recorded values to the digest.
+    /// A digest of the recorded values of a chunk's first member at the start and after a piece.
+    pub(crate) fn sample(&self, chunk: u64) -> u64 {
+        let mut digest = Digest::default();
+        self.look_at(self.range(chunk).start, &mut digest);
+        digest.value()
+    }
+
+    /// Adds a member's recorded values to the digest, if there is such a member.
     fn look_at(&self, member: u64, digest: &mut Digest) {
+        if member >= self.members {
+            return;
+        }
         match (self.make)(&self.member(member)) {
             Ok((stepper, mut state)) => {
                 for steps in [0, Self::PIECE.min(self.steps)] {

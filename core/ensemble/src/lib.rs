@@ -49,7 +49,7 @@
 //! | keep columns at the end, or at times | [`Ensemble::keep`], [`Ensemble::every`] |
 //! | keep columns where members cross a surface, or end there | [`Ensemble::section`], [`Section::until`] |
 //! | moments, histograms and quantiles of the ends, or of crossings | [`Ensemble::reduce`], [`Section::reduce`] |
-//! | find out which members failed, when and why | [`Store::shards`], [`MemberFailure`] |
+//! | find out which members failed, when and why | [`Ensemble::shards`], [`MemberFailure`] |
 //! | read the files elsewhere | [`Store`] |
 //! | use several machines | [`engines`] |
 
@@ -60,11 +60,13 @@ pub mod engines;
 mod ensemble;
 mod failure;
 mod group;
+mod name;
 mod outcome;
 mod reduce;
 mod report;
 mod section;
 mod shard;
+mod sizes;
 mod store;
 mod table;
 

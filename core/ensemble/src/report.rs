@@ -11,7 +11,8 @@ use crate::engine::Engine;
 use crate::ensemble::Ensemble;
 use crate::outcome::Outcome;
 use crate::reduce::Summary;
-use crate::store::{Fault, Store, StoreError};
+use crate::shard::Shard;
+use crate::store::{Fault, Plan, Store, StoreError, longest};
 
 /// The report of a run; it covers this share alone while chunks of other shares are missing.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +23,7 @@ pub struct Report {
     pub made: u64,
     /// Chunks still missing: of other shares, or after a stop.
     pub missing: u64,
-    /// The outcome of the members; [`Store::shards`] has all failures with their errors.
+    /// The outcome of the members; [`Ensemble::shards`] has all failures with their errors.
     pub outcome: Outcome,
     /// The damaged files. They are now called `….damaged`, and their chunks were recomputed, except for those found at
     /// the end, which are left to the next run. Only a [verified](Store::verified) store reads rows.
@@ -61,7 +62,53 @@ impl fmt::Display for Progress {
     }
 }
 
+impl<M: Integrator> Plan for Ensemble<M> {
+    fn print(&self) -> u64 {
+        self.fingerprint()
+    }
+
+    fn members(&self, chunk: u64) -> u64 {
+        let range = self.range(chunk);
+        range.end - range.start
+    }
+
+    fn sample(&self, chunk: u64) -> u64 {
+        self.sample(chunk)
+    }
+
+    fn outcome(&self, chunk: u64) -> Outcome {
+        self.chunk(chunk, &|| false).map_or_else(|| self.nothing(), |shard| shard.outcome)
+    }
+
+    fn nothing(&self) -> Outcome {
+        self.nothing()
+    }
+}
+
 impl<M: Integrator> Ensemble<M> {
+    /// The shards in a folder, one after another in the order of their chunks, and the faults of other files. Of a shard with
+    /// more members than this plan has, which is one of a plan of more, this plan's members are computed.
+    ///
+    /// # Errors
+    ///
+    /// [`StoreError::Io`] if a folder can't be read, and [`StoreError::Foreign`] if there are files of an older format.
+    pub fn shards(&self, store: &Store) -> Result<impl Iterator<Item = Result<Shard, Fault>>, StoreError> {
+        let mut files = Vec::new();
+        for of_chunk in store.named()?.chunk_by(|(first, _), (second, _)| first.chunk == second.chunk) {
+            files.extend_from_slice(longest(of_chunk));
+        }
+        files.retain(|(name, _)| self.members(name.chunk) > 0);
+        Ok(files.into_iter().map(|(name, path)| {
+            let shard = Store::read(&path)?;
+            let shorter = || self.chunk(name.chunk, &|| false).unwrap_or_else(|| shard.clone());
+            match (shard.plan == self.fingerprint(), name.members > self.members(name.chunk)) {
+                (false, _) => Err(Fault::Foreign(path)),
+                (true, true) => Ok(shorter()),
+                (true, false) => Ok(shard),
+            }
+        }))
+    }
+
     /// Computes the chunks that are missing in the folder, and reports.
     ///
     /// # Errors
@@ -83,10 +130,10 @@ impl<M: Integrator> Ensemble<M> {
         store: &Store,
         tell: &(dyn Fn(Progress) + Sync),
     ) -> Result<Report, StoreError> {
-        let (plan, chunks, begun) = (self.fingerprint(), self.chunks(), SystemTime::now());
+        let (chunks, begun) = (self.chunks(), SystemTime::now());
         let is_own = |chunk: u64| engine.has(chunk);
         let look = || {
-            let (found, damaged) = store.look(plan, &is_own)?;
+            let (found, damaged) = store.look(self, &is_own)?;
             Store::set_aside(&damaged)?;
             Ok(((0..chunks).filter(|chunk| !found.contains(chunk)).collect(), damaged))
         };
@@ -113,10 +160,10 @@ impl<M: Integrator> Ensemble<M> {
         };
         let make = |chunk: u64, is_stopped: &dyn Fn() -> bool| {
             // A process of another share may have written the chunk by now.
-            if others.contains(&chunk) && store.has(chunk) {
+            if others.contains(&chunk) && store.has(chunk, self.members(chunk)) {
                 return Ok(());
             }
-            let Some(shard) = self.shard(plan, chunk, is_stopped) else { return Ok(()) };
+            let Some(shard) = self.chunk(chunk, is_stopped) else { return Ok(()) };
             store.write(&shard)?;
             made.fetch_add(1, Ordering::Relaxed);
             told();
@@ -132,9 +179,10 @@ impl<M: Integrator> Ensemble<M> {
             names: self.all_reductions().map(|(name, _)| name.clone()).collect(),
         };
         if leads {
-            let is_whole = store.look(plan, &|_| false)?.0.len() as u64 == chunks;
+            let (there, _) = store.look(self, &|_| false)?;
+            let is_whole = (0..chunks).all(|chunk| there.contains(&chunk));
             let is_told = |chunk: u64| is_whole || is_own(chunk);
-            let (found, damaged) = store.survey(plan, &is_told, &self.nothing(), &mut report.outcome)?;
+            let (found, damaged) = store.survey(self, &is_told, &mut report.outcome)?;
             Store::set_aside(&damaged)?;
             report.faults.extend(damaged);
             report.missing = chunks - found;

@@ -163,6 +163,10 @@ pub struct Shard {
     pub plan: u64,
     /// The number of the chunk.
     pub chunk: u64,
+    /// The number of the chunk's members that are here: fewer than the chunk has if it is the last one.
+    pub members: u64,
+    /// A digest of the first member's recorded values at the start and after a [piece](crate::Ensemble::PIECE) of steps.
+    pub sample: u64,
     /// The names of the columns.
     #[serde(skip)]
     pub names: Vec<String>,
@@ -177,7 +181,30 @@ pub struct Shard {
 /// fixed.
 const KEY: &str = "liestep-ensemble";
 /// The first line of that text, a comment of TOML; another layout has another number.
-const FORMAT: &str = "# format 3";
+const FORMAT: &str = "# format 4";
+
+/// Arrow's magic bytes with their padding, before which there is nothing and behind which a stream begins.
+const MAGIC: usize = 64;
+/// The bytes before the schema: those, the mark of a message, and its length.
+const BEFORE: usize = MAGIC + 8;
+
+/// The length of a file's head, by its first bytes.
+fn head_length(before: &[u8]) -> usize {
+    let length = before.get(BEFORE - 4..BEFORE).and_then(|length| length.try_into().ok()).map_or(0, u32::from_le_bytes);
+    BEFORE.saturating_add(usize::try_from(length).unwrap_or(usize::MAX))
+}
+
+/// The head of a file, which is all but its rows and its end.
+pub(crate) fn head_of(file: &[u8]) -> &[u8] {
+    file.get(..head_length(file)).unwrap_or(file)
+}
+
+/// Reads the head of a file, or as much of it as there is.
+pub(crate) fn read_head(file: &mut impl Read, head: &mut Vec<u8>) -> std::io::Result<usize> {
+    file.by_ref().take(BEFORE as u64).read_to_end(head)?;
+    let left = head_length(head).saturating_sub(head.len());
+    file.by_ref().take(left as u64).read_to_end(head)
+}
 
 impl Shard {
     /// The bytes of the file, which are reproducible.
@@ -215,13 +242,10 @@ impl Shard {
         Ok(bytes)
     }
 
-    /// Reads a shard without its rows from the first part of the file, where an Arrow stream begins; otherwise as
-    /// [`of_bytes`](Self::of_bytes).
-    pub(crate) fn head(mut file: impl Read) -> Result<Option<Self>, String> {
-        // The writer's magic bytes with their padding.
-        let mut magic = [0; 64];
-        file.read_exact(&mut magic).map_err(|error| error.to_string())?;
-        let reader = StreamReader::try_new(file, None).map_err(|error| error.to_string())?;
+    /// Reads a shard without its rows from the head of a file; otherwise as [`of_bytes`](Self::of_bytes).
+    pub(crate) fn of_head(head: &[u8]) -> Result<Option<Self>, String> {
+        let stream = head.get(MAGIC..).unwrap_or_default();
+        let reader = StreamReader::try_new(stream, None).map_err(|error| error.to_string())?;
         Self::of_schema(&reader.schema())
     }
 
@@ -323,6 +347,8 @@ mod tests {
         let shard = Shard {
             plan: u64::MAX,
             chunk: 2,
+            members: 1,
+            sample: 5,
             names: vec![],
             rows,
             outcome: Outcome { passages, ..Outcome::default() },
@@ -336,6 +362,8 @@ mod tests {
         let shard = Shard {
             plan: 1,
             chunk: 2,
+            members: 0,
+            sample: 0,
             names: vec!["x".to_owned()],
             rows: Rows::of_columns(1, vec![]),
             outcome: Outcome::default(),

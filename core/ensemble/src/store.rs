@@ -5,22 +5,25 @@ use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read as _, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::SystemTime;
 use thiserror::Error;
 
+use crate::name::{Name, PER_FOLDER, SUM, is_part, part_of};
 use crate::outcome::Outcome;
-use crate::shard::Shard;
+use crate::shard::{Shard, head_of, read_head};
 use liestep::numbers::Digest;
 
-/// A folder that shards are written to and read from, `00000/00000012-0123456789abcdef.arrow`: a thousand to a
-/// subfolder, named by the number of the chunk and by a digest of the whole file.
+/// A folder that shards are written to and read from, a thousand to a subfolder:
+/// `00000/00000012-64-0123456789abcdef0123456789abcdef.arrow` is named by the number of the chunk, the number of its
+/// members, a digest of the file's head, and one of the whole file.
 ///
 /// A file is written under a temporary name, flushed to the disk, and then renamed; the folder is flushed, too. So
 /// after any interruption a shard is there whole or not at all, and the next run computes what is missing. Several
 /// processes may write to one folder, on a shared file system too. Files of other names are neither read nor removed. A
 /// full subfolder has the sum of its outcomes beside it, `00000.toml`, so that a report needn't open its files.
+///
+/// An ensemble of more members goes on in the folder: its files are then those of one that had all members at once, as
+/// only the last chunk, which had some of its members, is computed anew. One of fewer members reads the first ones.
 ///
 /// Every file is Arrow IPC and can be read without this library: `polars.read_ipc("out/*/*.arrow")`. Its columns are
 /// `member`, `step`, `status` (a [`Status`](crate::Status)), the [recorded](crate::Ensemble::keep) ones, and lists of
@@ -66,7 +69,7 @@ pub enum StoreError {
     },
     /// The folder has shards of another plan, or of another version of this format, which are left alone.
     #[error(
-        "{path} is of another plan (other members, steps, columns, or a changed program or library); take another folder, or delete that file"
+        "{path} is of another plan (another start, step, seed or column, or a changed program or library); take another folder, or delete that file"
     )]
     Foreign {
         /// One of the foreign shards.
@@ -90,7 +93,26 @@ pub enum StoreError {
 
 /// The last bytes of Arrow IPC files.
 const END: &[u8] = b"ARROW1";
-const PER_FOLDER: u64 = 1000;
+
+/// The plan with whose chunks a folder is compared.
+pub(crate) trait Plan {
+    /// The fingerprint.
+    fn print(&self) -> u64;
+    /// The number of members of a chunk; zero for a number beyond the last.
+    fn members(&self, chunk: u64) -> u64;
+    /// The sample of a chunk's first member.
+    fn sample(&self, chunk: u64) -> u64;
+    /// The outcome of a chunk's members, who move for it.
+    fn outcome(&self, chunk: u64) -> Outcome;
+    /// The outcome of no members.
+    fn nothing(&self) -> Outcome;
+}
+
+/// The files of one chunk that have the most members.
+pub(crate) fn longest(files: &[(Name, PathBuf)]) -> &[(Name, PathBuf)] {
+    let most = files.last().map(|(name, _)| name.members);
+    &files[files.partition_point(|(name, _)| Some(name.members) < most)..]
+}
 
 /// The summed outcome of a full subfolder.
 #[derive(Serialize, Deserialize)]
@@ -101,8 +123,24 @@ struct Sum {
     outcome: Outcome,
 }
 
-/// The suffix of the sum's name, after the name of the subfolder beside it.
-const SUM: &str = ".toml";
+impl Sum {
+    /// The sum of a file, whose first line is a comment with the digest of the others.
+    fn read(path: &Path) -> Option<Self> {
+        let text = fs::read_to_string(path).ok()?;
+        let (digest, text) = text.strip_prefix("# ")?.split_once('\n')?;
+        let is_same = u64::from_str_radix(digest, 16) == Ok(Digest::of(text.as_bytes()));
+        if is_same { toml::from_str(text).ok() } else { None }
+    }
+
+    /// Writes the sum; without it the next survey sums again.
+    fn write(&self, folder: &Path, path: &Path) {
+        let text = toml::to_string(self).unwrap_or_default();
+        let part = folder.join(part_of(SUM));
+        let _ = fs::write(&part, format!("# {:016x}\n{text}", Digest::of(text.as_bytes())))
+            .and_then(|()| fs::rename(&part, path))
+            .or_else(|_| fs::remove_file(&part));
+    }
+}
 
 impl Store {
     /// Opens a folder, which is created if there is none.
@@ -117,7 +155,7 @@ impl Store {
     }
 
     /// Lets a run read the chunks of its share that are there first, and recompute damaged ones. Without it a run
-    /// trusts the names, which only whole files get, and reads no rows.
+    /// reads no rows: it trusts the names, which only whole files get, and the heads, each of which has a digest.
     #[must_use]
     pub fn verified(mut self) -> Self {
         self.verifies = true;
@@ -128,12 +166,22 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// [`StoreError::Io`] if a folder can't be read.
+    /// [`StoreError::Io`] if a folder can't be read, and [`StoreError::Foreign`] if there are files of an older format.
     pub fn files(&self) -> Result<Vec<(u64, PathBuf)>, StoreError> {
+        Ok(self.named()?.into_iter().map(|(name, path)| (name.chunk, path)).collect())
+    }
+
+    /// The files of shards in the order of their chunks and of the numbers of their members.
+    pub(crate) fn named(&self) -> Result<Vec<(Name, PathBuf)>, StoreError> {
         let mut files = Vec::new();
         for folder in entries(&self.folder)?.into_iter().filter(|path| path.is_dir()) {
-            let named = entries(&folder)?.into_iter().filter_map(|path| Some((name_of(&path)?.0, path)));
-            files.extend(named.filter(|(_, path)| !path.is_dir()));
+            let within = entries(&folder)?;
+            if let Some(path) = within.iter().find(|path| Name::is_older(path)) {
+                return Err(StoreError::Foreign { path: path.clone() });
+            }
+            files.extend(
+                within.into_iter().filter(|path| !path.is_dir()).filter_map(|path| Some((Name::of(&path)?, path))),
+            );
         }
         files.sort();
         Ok(files)
@@ -146,37 +194,23 @@ impl Store {
     /// A [`Fault`] if it is truncated, altered or no shard, or if the file system fails.
     pub fn read(path: &Path) -> Result<Shard, Fault> {
         let bytes = fs::read(path).map_err(|error| Fault::Io(path.to_owned(), error.to_string()))?;
-        Self::shard_of(path, &bytes)
+        Self::shard_of(path, &bytes, true)
     }
 
-    fn shard_of(path: &Path, bytes: &[u8]) -> Result<Shard, Fault> {
+    /// The shard of a file's bytes, or of those of its head.
+    fn shard_of(path: &Path, bytes: &[u8], is_whole: bool) -> Result<Shard, Fault> {
         let unreadable = |reason: &str| Fault::Unreadable(path.to_owned(), reason.to_owned());
-        let (chunk, digest) =
-            name_of(path).ok_or_else(|| unreadable("its name, or that of its folder, isn't a shard's"))?;
+        let name = Name::of(path).ok_or_else(|| unreadable("its name, or that of its folder, isn't a shard's"))?;
+        let [of_head, of_file] = name.digests;
+        let digest = if is_whole { of_file } else { of_head };
         if Digest::of_file(bytes) != digest {
-            // Files of format 1 have this digest.
-            if Digest::of(bytes) == digest {
-                return Err(Fault::Foreign(path.to_owned()));
-            }
-            let is_whole = bytes.ends_with(END);
-            return Err(if is_whole { Fault::Altered(path.to_owned()) } else { Fault::Truncated(path.to_owned()) });
+            let has_its_end = !is_whole || bytes.ends_with(END);
+            return Err(if has_its_end { Fault::Altered(path.to_owned()) } else { Fault::Truncated(path.to_owned()) });
         }
-        let shard = Shard::of_bytes(bytes).map_err(|reason| unreadable(&reason))?;
-        let shard = shard.ok_or_else(|| Fault::Foreign(path.to_owned()))?;
-        if shard.chunk == chunk { Ok(shard) } else { Err(Fault::Altered(path.to_owned())) }
-    }
-
-    /// The shards of a plan, one after another in the order of their chunks, and the faults of other files.
-    ///
-    /// # Errors
-    ///
-    /// [`StoreError::Io`] if a folder can't be read.
-    pub fn shards(&self, plan: u64) -> Result<impl Iterator<Item = Result<Shard, Fault>>, StoreError> {
-        let read = move |(_, path): (u64, PathBuf)| {
-            let shard = Self::read(&path)?;
-            if shard.plan == plan { Ok(shard) } else { Err(Fault::Foreign(path)) }
-        };
-        Ok(self.files()?.into_iter().map(read))
+        let shard = if is_whole { Shard::of_bytes(bytes) } else { Shard::of_head(bytes) };
+        let shard = shard.map_err(|reason| unreadable(&reason))?.ok_or_else(|| Fault::Foreign(path.to_owned()))?;
+        let is_named = (shard.chunk, shard.members) == (name.chunk, name.members);
+        if is_named { Ok(shard) } else { Err(Fault::Altered(path.to_owned())) }
     }
 
     /// Writes a shard: whole, or not at all.
@@ -186,8 +220,9 @@ impl Store {
     /// [`StoreError`] if that fails. Other shards stay as they were.
     pub fn write(&self, shard: &Shard) -> Result<(), StoreError> {
         let bytes = shard.to_bytes().map_err(|error| StoreError::Unwritable { reason: error.to_string() })?;
-        let folder = self.folder.join(folder_of(shard.chunk));
-        let name = file_of(shard.chunk, Digest::of_file(&bytes));
+        let digests = [head_of(&bytes), &bytes].map(Digest::of_file);
+        let name = Name { chunk: shard.chunk, members: shard.members, digests };
+        let (folder, name) = (self.folder.join(name.folder()), name.file());
         let io = |path: &Path| {
             let path = path.to_owned();
             move |error| StoreError::Io { path, error }
@@ -235,102 +270,143 @@ impl Store {
         Ok(())
     }
 
-    /// Whether a file of this chunk exists, by its name.
-    pub(crate) fn has(&self, chunk: u64) -> bool {
-        let folder = entries(&self.folder.join(folder_of(chunk)));
-        folder.is_ok_and(|paths| paths.iter().any(|path| name_of(path).is_some_and(|(own, _)| own == chunk)))
+    /// Whether a file of this chunk with so many members exists, by its name.
+    pub(crate) fn has(&self, chunk: u64, members: u64) -> bool {
+        let folder = Name { chunk, members, digests: [0; 2] }.folder();
+        let is_it = |path: &PathBuf| Name::of(path).is_some_and(|own| own.chunk == chunk && own.members >= members);
+        entries(&self.folder.join(folder)).is_ok_and(|paths| paths.iter().any(is_it))
     }
 
-    /// The chunks that exist, by the names of their files, and the faults of other files. All files of a chunk with two
-    /// are read. The share's own chunks have one file's head read, to check the plan, or all files if
-    /// [verified](Self::verified).
+    /// The chunks whose members exist, by the names of their files, and the faults of other files. All files of a chunk with
+    /// two of the same members are read. Of the share's own chunks the heads of the first, the middle and the last one
+    /// are read, to check the plan, or all files if [verified](Self::verified).
     pub(crate) fn look(
         &self,
-        plan: u64,
+        plan: &dyn Plan,
         is_own: &dyn Fn(u64) -> bool,
     ) -> Result<(BTreeSet<u64>, Vec<Fault>), StoreError> {
-        let (mut found, mut faults, mut has_read) = (BTreeSet::new(), Vec::new(), false);
-        for files in self.files()?.chunk_by(|(first, _), (second, _)| first == second) {
-            for (chunk, path) in files {
+        let (mut found, mut faults) = (BTreeSet::new(), Vec::new());
+        let files = self.named()?;
+        let own: Vec<u64> = files.iter().map(|(name, _)| name.chunk).filter(|chunk| is_own(*chunk)).collect();
+        let looked_at = [own.first(), own.get(own.len() / 2), own.last()].map(Option::<&u64>::copied);
+        for files in files.chunk_by(|(first, _), (second, _)| first.chunk == second.chunk) {
+            let files = longest(files);
+            for (Name { chunk, members, .. }, path) in files {
                 let is_whole = files.len() > 1 || self.verifies && is_own(*chunk);
-                if !is_whole && (has_read || !is_own(*chunk)) {
-                    found.insert(*chunk);
-                    continue;
-                }
-                has_read = true;
-                match Self::shard(path, plan, is_whole)? {
+                let is_looked_at = looked_at.contains(&Some(*chunk));
+                let shard = if is_whole || is_looked_at { Self::shard(path, plan, is_whole)? } else { None };
+                match shard {
                     Some(Ok(_)) if found.contains(chunk) => return Err(StoreError::Twice { path: path.clone() }),
-                    Some(Ok(_)) => drop(found.insert(*chunk)),
-                    Some(Err(fault)) => faults.push(fault),
-                    None => {}
+                    Some(Ok(shard))
+                        if is_looked_at && plan.members(*chunk) > 0 && plan.sample(*chunk) != shard.sample =>
+                    {
+                        return Err(StoreError::Foreign { path: path.clone() });
+                    }
+                    Some(Err(fault)) => {
+                        faults.push(fault);
+                        continue;
+                    }
+                    // Another process has renamed the file.
+                    None if is_whole || is_looked_at => continue,
+                    _ => {}
+                }
+                if *members >= plan.members(*chunk) {
+                    found.insert(*chunk);
                 }
             }
         }
         Ok((found, faults))
     }
 
-    /// Adds the outcomes of the chunks that exist and that `is_own` selects, in the order of their numbers; returns the
-    /// number of all chunks that exist, and the faults of other files. No rows are read. A full subfolder is read by
-    /// the sum beside it alone, which its first reader writes.
+    /// Adds the outcomes of the plan's chunks that exist and that `is_own` selects, in the order of their numbers; returns
+    /// the number of all of its chunks that exist, and the faults of other files. No rows are read. A full subfolder is
+    /// read by the sum beside it alone, which its first reader writes. Files of fewer members than one beside them are
+    /// removed.
     pub(crate) fn survey(
         &self,
-        plan: u64,
+        plan: &dyn Plan,
         is_own: &dyn Fn(u64) -> bool,
-        nothing: &Outcome,
         all: &mut Outcome,
     ) -> Result<(u64, Vec<Fault>), StoreError> {
         let (mut count, mut faults) = (0, Vec::new());
-        for files in self.files()?.chunk_by(|(first, _), (second, _)| first / PER_FOLDER == second / PER_FOLDER) {
+        let mut files = self.named()?;
+        files.retain(|(name, _)| plan.members(name.chunk) > 0);
+        for files in files.chunk_by(|(first, _), (second, _)| first.folder() == second.folder()) {
             let mut names = Digest::default();
             files.iter().filter_map(|(_, path)| path.file_name()).for_each(|name| names.text(&name.to_string_lossy()));
-            let sum = self.folder.join(folder_of(files[0].0) + SUM);
-            let is_whole = files.len() as u64 == PER_FOLDER && files.iter().all(|(chunk, _)| is_own(*chunk));
-            let is_same = |sum: &Sum| is_whole && (sum.plan, sum.names) == (plan, names.value());
-            if let Some(sum) = fs::read_to_string(&sum).ok().and_then(|text| toml::from_str(&text).ok()).filter(is_same)
-            {
+            let sum = self.folder.join(files[0].0.folder() + SUM);
+            let is_whole = files.len() as u64 == PER_FOLDER
+                && files.iter().all(|(name, _)| is_own(name.chunk) && name.members == plan.members(name.chunk));
+            let is_same = |sum: &Sum| is_whole && (sum.plan, sum.names) == (plan.print(), names.value());
+            if let Some(sum) = Sum::read(&sum).filter(is_same) {
                 count += PER_FOLDER;
                 all.merge(&sum.outcome);
                 continue;
             }
-            let mut made = Sum { plan, names: names.value(), outcome: nothing.clone() };
-            let (before, mut last) = ((count, faults.len()), None);
-            for (chunk, path) in files {
-                let shard = if is_own(*chunk) { Self::shard(path, plan, false)? } else { None };
-                match shard {
+            let mut made = Sum { plan: plan.print(), names: names.value(), outcome: plan.nothing() };
+            let (found, damaged) = Self::summed(files, plan, is_own, &mut made.outcome)?;
+            count += found;
+            all.merge(&made.outcome);
+            if is_whole && (found, damaged.len()) == (PER_FOLDER, 0) {
+                made.write(&self.folder, &sum);
+            }
+            faults.extend(damaged);
+        }
+        Ok((count, faults))
+    }
+
+    /// Adds the outcomes of these files, as [`survey`](Self::survey).
+    fn summed(
+        files: &[(Name, PathBuf)],
+        plan: &dyn Plan,
+        is_own: &dyn Fn(u64) -> bool,
+        all: &mut Outcome,
+    ) -> Result<(u64, Vec<Fault>), StoreError> {
+        let (mut count, mut faults) = (0, Vec::new());
+        for files in files.chunk_by(|(first, _), (second, _)| first.chunk == second.chunk) {
+            let (longest, mut is_there) = (longest(files), false);
+            for (Name { chunk, members, .. }, path) in longest {
+                match if is_own(*chunk) { Self::shard(path, plan, false)? } else { None } {
                     Some(Err(fault)) => {
                         faults.push(fault);
                         continue;
                     }
-                    Some(Ok(_)) if last == Some(*chunk) => return Err(StoreError::Twice { path: path.clone() }),
-                    Some(Ok(shard)) => made.outcome.merge(&shard.outcome),
+                    Some(Ok(_)) if is_there => return Err(StoreError::Twice { path: path.clone() }),
+                    // The reductions of some of a file's members aren't in it.
+                    Some(Ok(_)) if *members > plan.members(*chunk) => all.merge(&plan.outcome(*chunk)),
+                    Some(Ok(shard)) => all.merge(&shard.outcome),
                     None => {}
                 }
-                count += u64::from(last.replace(*chunk) != Some(*chunk));
+                count += u64::from(!is_there && *members >= plan.members(*chunk));
+                is_there = true;
             }
-            all.merge(&made.outcome);
-            if is_whole && (count, faults.len()) == (before.0 + PER_FOLDER, before.1) {
-                // Without a written sum the next survey sums again.
-                let (part, text) = (self.folder.join(part_of(SUM)), toml::to_string(&made).unwrap_or_default());
-                let _ =
-                    fs::write(&part, text).and_then(|()| fs::rename(&part, &sum)).or_else(|_| fs::remove_file(&part));
+            // Files of a plan of fewer members have given way to a whole one.
+            for (_, path) in &files[..files.len() - longest.len()] {
+                if is_there {
+                    let _ = fs::remove_file(path);
+                }
             }
         }
         Ok((count, faults))
     }
 
     /// The shard of a file, whole or its head; `None` if another process has just renamed the file.
-    fn shard(path: &Path, plan: u64, is_whole: bool) -> Result<Option<Result<Shard, Fault>>, StoreError> {
+    pub(crate) fn shard(
+        path: &Path,
+        plan: &dyn Plan,
+        is_whole: bool,
+    ) -> Result<Option<Result<Shard, Fault>>, StoreError> {
         let opened = File::open(path).and_then(|mut file| {
-            if !is_whole {
-                let shard = Shard::head(file).map_err(|reason| Fault::Unreadable(path.to_owned(), reason));
-                return Ok(shard.and_then(|shard| shard.ok_or_else(|| Fault::Foreign(path.to_owned()))));
-            }
             let mut bytes = Vec::new();
-            file.read_to_end(&mut bytes)?;
-            Ok(Self::shard_of(path, &bytes))
+            if is_whole {
+                file.read_to_end(&mut bytes)?
+            } else {
+                read_head(&mut file, &mut bytes)?
+            };
+            Ok(Self::shard_of(path, &bytes, is_whole))
         });
         match opened {
-            Ok(Ok(shard)) if shard.plan != plan => Err(StoreError::Foreign { path: path.to_owned() }),
+            Ok(Ok(shard)) if shard.plan != plan.print() => Err(StoreError::Foreign { path: path.to_owned() }),
             Ok(Err(Fault::Foreign(path))) => Err(StoreError::Foreign { path }),
             Ok(shard) => Ok(Some(shard)),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
@@ -354,44 +430,8 @@ impl Store {
     }
 }
 
-fn folder_of(chunk: u64) -> String {
-    format!("{:05}", chunk / PER_FOLDER)
-}
-
-fn file_of(chunk: u64, digest: u64) -> String {
-    format!("{chunk:08}-{digest:016x}.arrow")
-}
-
-/// The number and the digest in a shard's name, if it is exactly a name by [`Store::write`].
-fn name_of(path: &Path) -> Option<(u64, u64)> {
-    let name = path.file_name()?.to_str()?;
-    let (chunk, digest) = name.strip_suffix(".arrow")?.split_once('-')?;
-    let (chunk, digest) = (chunk.parse().ok()?, u64::from_str_radix(digest, 16).ok()?);
-    let folder = path.parent()?.file_name()?.to_str()?;
-    (name == file_of(chunk, digest) && folder == folder_of(chunk)).then_some((chunk, digest))
-}
-
 /// The most attempts to write a file that another process removes.
 const MOST_TRIES: u32 = 8;
-
-/// The name of a file while it is written. The machine, the process and a number make it unique among machines and
-/// threads.
-fn part_of(name: &str) -> String {
-    static COUNT: AtomicU64 = AtomicU64::new(0);
-    static HOST: OnceLock<String> = OnceLock::new();
-    let host = HOST.get_or_init(|| {
-        let name = fs::read_to_string("/proc/sys/kernel/hostname").or_else(|_| std::env::var("COMPUTERNAME"));
-        let name = name.unwrap_or_default().trim().replace(|letter: char| !letter.is_ascii_alphanumeric(), "-");
-        if name.is_empty() { "host".to_owned() } else { name }
-    });
-    format!("{name}.{host}-{}-{}.part", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
-}
-
-/// Whether a file is a shard or a sum under its temporary name.
-fn is_part(path: &Path) -> bool {
-    let shard = || path.to_str()?.strip_suffix(".part")?.rsplit_once('.');
-    shard().map(|(shard, _)| Path::new(shard)).is_some_and(|own| own.ends_with(SUM) || name_of(own).is_some())
-}
 
 fn entries(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let io = |error| StoreError::Io { path: folder.to_owned(), error };

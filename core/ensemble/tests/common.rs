@@ -42,8 +42,10 @@ pub fn made(members: u64) -> Vec<(u64, MemberStart)> {
         made
     });
     let _ = probe.seed(7).chunks_of(members).chunk(0, &|| false);
-    // The fingerprint has constructed three members before.
-    starts.lock().unwrap().split_off(3)
+    // The chunk's sample and the plan's fingerprint construct the first member, too, before and after.
+    let mut starts = starts.lock().unwrap().split_off(1);
+    starts.truncate(usize::try_from(members).unwrap());
+    starts
 }
 
 /// The panic of an ensemble that is refused.

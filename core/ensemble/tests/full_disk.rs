@@ -33,7 +33,7 @@ fn a_full_disk_is_an_error_that_loses_no_finished_shard() {
     let removed = (0..20_000).filter(|count| std::fs::remove_file(part(*count)).is_ok()).count();
     assert_eq!(removed, 19_999);
     assert_eq!(contents(&folder.0).len(), 7);
-    assert!(store.shards(ensemble.fingerprint()).unwrap().all(|shard| shard.is_ok()));
+    assert!(ensemble.shards(&store).unwrap().all(|shard| shard.is_ok()));
     let report = ensemble.run(&Local::threads(2), &store).unwrap();
     assert_eq!((report.made, report.missing), (13, 0));
     assert!(contents(&folder.0) == contents(&expected.0));
@@ -45,7 +45,8 @@ fn what_another_is_writing_stays() {
     let (ensemble, folder) = (tops(MEMBERS, STEPS), Folder::new("beside"));
     let part = |number: u32| {
         std::fs::create_dir_all(folder.0.join("00000")).unwrap();
-        let path = folder.0.join(format!("00000/00000001-cbf29ce484222325.arrow.host-{number}-0.part"));
+        let path =
+            folder.0.join(format!("00000/00000001-20-cbf29ce484222325cbf29ce484222325.arrow.host-{number}-0.part"));
         std::fs::write(&path, "half").unwrap();
         path
     };
@@ -54,7 +55,10 @@ fn what_another_is_writing_stays() {
     let store = Store::folder(&folder.0).unwrap();
     let report = ensemble.run_telling(&Local::threads(1), &store, &|_| drop(part(2))).unwrap();
     assert_eq!(report.missing, 0);
-    assert!(!before.exists() && folder.0.join("00000/00000001-cbf29ce484222325.arrow.host-2-0.part").exists());
+    assert!(
+        !before.exists()
+            && folder.0.join("00000/00000001-20-cbf29ce484222325cbf29ce484222325.arrow.host-2-0.part").exists()
+    );
 }
 
 /// A temporary file that another process removes is written again.

@@ -82,7 +82,7 @@ where
         let ensemble = ensemble.every(40).keep(["x", "y", "z"], move |run| of_attitude(run.state));
         ensemble.keep(["p", "q", "r"], |run| run.state.momentum().into()).chunk(0, &|| false).unwrap()
     };
-    let together = kept(Ensemble::new("tops", MEMBERS, STEPS, member));
+    let together = kept(Ensemble::new("tops", MEMBERS, STEPS, member).chunks_of(MEMBERS));
     let alone = kept(Ensemble::one_by_one("tops", MEMBERS, STEPS, member).chunks_of(MEMBERS));
     assert!(bits(&together) == bits(&alone), "{name}: {:?}, {:?}", together.outcome.failures, alone.outcome.failures);
     together.outcome.failures

@@ -1,13 +1,15 @@
 //! Ensembles: many motions of one scene with random parameters and starts, in files from which a killed run resumes.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use liestep::motion::{AnyStepper, Factor, Integrator as _};
 use liestep::recording::Column;
-use liestep_ensemble::{Ensemble, Local, Member, MemberFailure, Progress, Report, Store};
+use liestep_ensemble::{Ensemble, Local, Member, MemberFailure, Progress, Report, Store, StoreError};
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
 use crate::failure::Failure;
@@ -185,8 +187,25 @@ where
             }
         }
         let report = work.join().map_err(|_| Failure::Of("StoreError", "a thread has come to no end".to_owned()))?;
-        raised.map_or_else(|| report.map_err(|error| store_error(&error)), |error| Err(Failure::Raised(error)))
+        match raised {
+            Some(error) => {
+                Err(Failure::Raised(Python::attach(|py| interrupted(py, error, &report, &plan.folder))))
+            }
+            None => report.map_err(|error| store_error(&error)),
+        }
     })
+}
+
+/// The interrupt of a run, with what is kept of it.
+fn interrupted(py: Python<'_>, error: PyErr, report: &Result<Report, StoreError>, folder: &Path) -> PyErr {
+    match report {
+        Ok(Report { chunks, missing, .. }) if error.is_instance_of::<PyKeyboardInterrupt>(py) => {
+            let there = chunks - missing;
+            let folder = folder.display();
+            PyKeyboardInterrupt::new_err(format!("{there} of {chunks} chunks are kept in {folder}; the same `run` goes on there"))
+        }
+        _ => error,
+    }
 }
 
 /// The rows of all finished chunks, in the order of the members.
@@ -197,7 +216,7 @@ fn collected<M: liestep::motion::Integrator>(
     report: Report,
 ) -> Result<Outcome, Failure> {
     let (mut chunks, mut failures) = (BTreeMap::new(), Vec::new());
-    for shard in store.shards(ensemble.fingerprint()).map_err(|error| store_error(&error))? {
+    for shard in ensemble.shards(store).map_err(|error| store_error(&error))? {
         let shard = shard.map_err(|fault| store_error(&fault))?;
         failures.extend(shard.outcome.failures);
         chunks.insert(shard.chunk, shard.rows);

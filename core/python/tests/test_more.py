@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -74,18 +75,52 @@ def test_a_mistake_of_a_file_has_its_place():
 
 def test_members_are_those_of_their_seed_whoever_makes_them(top, tmp_path):
     told = []
-    whole = many(top).run(tmp_path / "whole", until=1, threads=2, progress=lambda done, all: told.append((done, all)))
+    whole = many(top).run(tmp_path / "whole", until=1, threads=2, chunk=20, progress=lambda done, all: told.append((done, all)))
     assert (whole.finished, whole.failed, whole.missing) == (200, 0, 0) and told
     # Two shares, the second by an ensemble that was pickled.
-    first = many(top).run(tmp_path / "shares", until=1, share="0/2", progress=False)
+    first = many(top).run(tmp_path / "shares", until=1, share="0/2", chunk=20, progress=False)
     assert first.missing > 0
     again = pickle.loads(pickle.dumps(many(top)))
-    both = again.run(tmp_path / "shares", until=1, share="1/2", progress=False)
+    both = again.run(tmp_path / "shares", until=1, share="1/2", chunk=20, progress=False)
     assert both.missing == 0
     for name in whole.names:
         assert (whole[name] == both[name]).all(), name
     names = [sorted(path.name for path in (tmp_path / folder).rglob("*.arrow")) for folder in ("whole", "shares")]
     assert names[0] == names[1]
+
+
+def files_of(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*.arrow")}
+
+
+@pytest.mark.parametrize("chunk", [None, 20])
+def test_more_members_extend_a_folder(top, tmp_path, chunk):
+    def ends(members, folder):
+        return many(top, members).run(tmp_path / folder, until=1, every=10, chunk=chunk, progress=False)
+
+    fewer, whole = ends(130, "grown"), ends(200, "whole")
+    grown = ends(200, "grown")
+    assert (grown.finished, grown.missing) == (200, 0) and grown.chunks >= fewer.chunks
+    assert files_of(tmp_path / "grown") == files_of(tmp_path / "whole")
+    # A folder with more members tells of the first ones.
+    again = ends(130, "whole")
+    assert (again.finished, again.missing, len(again)) == (130, 0, len(fewer))
+    for name in fewer.names:
+        assert (again[name] == fewer[name]).all() and (grown[name] == whole[name]).all(), name
+
+
+def test_an_interrupt_says_what_is_kept(top, tmp_path):
+    told = []
+
+    def interrupt(done, all):
+        told.append(done)
+        if done >= 3:
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt, match=r"\d+ of 100 chunks are kept in .*; the same `run` goes on there") as raised:
+        many(top, 100).run(tmp_path, until=1000, chunk=1, progress=interrupt)
+    kept = int(str(raised.value).split()[0])
+    assert kept == len(files_of(tmp_path)) and 3 <= kept < 100
 
 
 def test_a_member_is_the_run_of_its_numbers(top, tmp_path):

@@ -65,10 +65,10 @@ fn shares_and_a_second_run_make_the_same_files() {
     fs::write(folder.join("top.toml"), text.replace("[drag]\nc = 1e-3\n", "")).unwrap();
     let whole = printed(&folder, &["ensemble", "top.toml", "--out", "whole"]);
     assert!(whole.contains("40 finished") && whole.contains("velocity_z"), "{whole}");
-    let first = printed(&folder, &["ensemble", "top.toml", "--shard", "1/2", "--threads", "1", "--out", "parts"]);
+    let first = printed(&folder, &["ensemble", "top.toml", "--share", "1/2", "--threads", "1", "--out", "parts"]);
     let part = files(&folder.join("parts/top.ensemble")).len();
     // The last share reports all members.
-    let last = printed(&folder, &["ensemble", "top.toml", "--shard", "0/2", "--out", "parts"]);
+    let last = printed(&folder, &["ensemble", "top.toml", "--share", "0/2", "--out", "parts"]);
     assert!(first.contains("in this share: 16 finished") && !first.contains("velocity_z"), "{first}");
     assert!(last.contains("seed 7: 40 finished") && last.contains("velocity_z"), "{last}");
     let [one, other] = ["whole", "parts"].map(|out| files(&folder.join(out).join("top.ensemble")));
@@ -100,6 +100,73 @@ fn shares_and_a_second_run_make_the_same_files() {
     assert!(spin.windows(2).all(|pair| (pair[0] - pair[1]).abs() > 1e-9));
 }
 
+/// A file with more members goes on in the folder, whatever else of it no member knows of, and has the files of a folder with
+/// all of them at once. With fewer members it tells of the first ones.
+#[test]
+fn more_members_extend_a_folder() {
+    let folder = folder("more_members_extend_a_folder");
+    let text = drawn("chunk = 8\ndraw.start.velocity = [0, 0, { from = \"60 rpm\", to = \"90 rpm\" }]\n");
+    let of = |members: u32, out: &str| {
+        let text = text.replace("members = 40", &format!("# So many.\nmembers = {members}"));
+        fs::write(folder.join("top.toml"), text.replacen("title = \"", &format!("title = \"{members}: "), 1)).unwrap();
+        printed(&folder, &["ensemble", "top.toml", "--out", out])
+    };
+    of(40, "whole");
+    assert!(of(20, "grown").contains("20 members") && of(20, "grown").contains("3 chunks, 0 of them now"));
+    let told = of(40, "grown");
+    assert!(
+        told.starts_with("40: ") && told.contains("40 finished") && told.contains("5 chunks, 3 of them now"),
+        "{told}"
+    );
+    let [whole, grown] = ["whole", "grown"].map(|out| files(&folder.join(out).join("top.ensemble")));
+    assert!(whole == grown && whole.len() == 5);
+    let few = |out| of(20, out).lines().skip(1).filter(|line| !line.contains("Written")).collect::<Vec<_>>().join("\n");
+    assert_eq!(few("grown"), few("few"));
+    assert_eq!(files(&folder.join("grown/top.ensemble")), whole);
+    // Another step, seed or draw is another plan.
+    for [from, to] in [["seed = 7", "seed = 8"], ["\"10 ms\"", "\"5 ms\""], ["90 rpm", "91 rpm"]] {
+        assert!(text.contains(from), "{text}");
+        fs::write(folder.join("top.toml"), text.replace(from, to)).unwrap();
+        refuses(&folder, &["ensemble", "top.toml", "--out", "grown"], 4, "is of another plan");
+    }
+}
+
+/// Ctrl-C ends a run at its next steps, with a message of what is kept; the command in it goes on.
+#[cfg(unix)]
+#[test]
+fn control_c_says_what_is_kept() {
+    use std::process::{Command, Stdio};
+    let folder = folder("control_c_says_what_is_kept");
+    let text = drawn("chunk = 8\ndraw.start.velocity = [0, 0, { from = \"60 rpm\", to = \"90 rpm\" }]\n");
+    fs::write(folder.join("a top.toml"), text.replace("members = 40", "members = 1000000")).unwrap();
+    let mut run = Command::new(crate::called::PROGRAM);
+    let run = run.current_dir(&folder).args(["ensemble", "a top.toml", "--threads", "2"]).stderr(Stdio::piped());
+    let run = run.stdout(Stdio::null()).spawn().unwrap();
+    let inside = folder.join("out/a top.ensemble");
+    while !inside.is_dir() || files(&inside).len() < 3 {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
+    let output = run.wait_with_output().unwrap();
+    let (told, there) = (String::from_utf8(output.stderr).unwrap(), files(&inside).len());
+    assert_eq!(output.status.code(), Some(130), "{told}");
+    let kept = format!(
+        "stopped by Ctrl-C: {there} of 125000 chunks, with {} members, are kept in out/a top.ensemble",
+        8 * there
+    );
+    assert!(
+        told.contains(&kept) && told.trim_end().ends_with(" ensemble 'a top.toml' --threads 2` goes on there"),
+        "{told}"
+    );
+    // The shell reads the command; with fewer members there is an end of it.
+    let members = 8 * (there + 2);
+    fs::write(folder.join("a top.toml"), text.replace("members = 40", &format!("members = {members}"))).unwrap();
+    let command = told.split('`').nth(1).unwrap();
+    let again = Command::new("sh").args(["-c", command]).current_dir(&folder).output().unwrap();
+    let again = String::from_utf8(again.stdout).unwrap();
+    assert!(again.contains(&format!("{} chunks, 2 of them now", there + 2)), "{again}");
+}
+
 /// The example file has no chunk size; its default has work for all cores and for both of two shares.
 #[test]
 fn what_is_shipped_has_many_chunks() {
@@ -109,7 +176,7 @@ fn what_is_shipped_has_many_chunks() {
     // A twentieth of the time, with quaternions, which have no means.
     let text = text.replace("\"40 min\"", "\"2 min\"") + "\n[output]\ncolumns = [\"quaternion\", \"velocity\"]\n";
     fs::write(folder.join("detumbling.toml"), text).unwrap();
-    let part = printed(&folder, &["ensemble", "detumbling.toml", "--shard", "1/2", "--out", "."]);
+    let part = printed(&folder, &["ensemble", "detumbling.toml", "--share", "1/2", "--out", "."]);
     let made = files(&folder.join("detumbling.ensemble")).len();
     assert!(made > 8 && part.contains(&format!("{made} chunks, {made} of them now")), "{made}: {part}");
     let whole = printed(&folder, &["ensemble", "detumbling.toml", "--out", "."]);

@@ -5,7 +5,7 @@ use std::fs;
 
 use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 
-use crate::called::{folder, printed, rows, table};
+use crate::called::{folder, printed, refuses, rows, table};
 
 /// s.
 const PERIOD: f64 = 6000.0;
@@ -172,6 +172,28 @@ fn all_commands_have_orbits() {
             assert!((own.abs() - of_run.abs()).abs() < allowed, "{place}: {own} {of_run}");
         }
     }
+}
+
+/// The members of a file along an orbit with an event have its default columns but the energy, which isn't known at the event.
+/// A file that lists the energy is refused at its list.
+#[test]
+fn members_along_an_orbit_have_default_columns() {
+    let folder = folder("members_along_an_orbit_have_default_columns");
+    let text = satellite(GRADIENT, [0.0, 0.0, 1.0], 0.1, "euler = [0.9, 0, 0]\nvelocity = [0, 0, 1e-3]", 780)
+        + "[ensemble]\nmembers = 3\ndraw.orbit.phase = { from = \"40 deg\", to = \"41 deg\" }\n\
+           [[event]]\nname = \"sideways\"\naxis_x = 0\n";
+    let columns = "[output]\ncolumns = [\"quaternion\", \"velocity\", \"energy\", \"spatial-momentum\"]\n";
+    fs::write(folder.join("lists.toml"), &text).unwrap();
+    let line = 1 + text.lines().position(|line| line.starts_with("columns = ")).unwrap();
+    refuses(&folder, &["ensemble", "lists.toml"], 1, &format!("lists.toml:{line}:1"));
+    refuses(&folder, &["ensemble", "lists.toml"], 1, "leave `energy` out of `columns`");
+    fs::write(folder.join("default.toml"), text.replace(columns, "")).unwrap();
+    let told = printed(&folder, &["ensemble", "default.toml", "--out", "."]);
+    assert!(told.contains("3 finished") && told.contains("sideways: ") && !told.contains("energy"), "{told}");
+    let store = liestep_ensemble::Store::folder(folder.join("default.ensemble")).unwrap();
+    let shard = liestep_ensemble::Store::read(&store.files().unwrap()[0].1).unwrap();
+    let has = |name: &str| shard.names.iter().any(|own| own == name);
+    assert!(has("velocity_x") && has("spatial_momentum_z") && has("q_w") && !has("energy"), "{:?}", shard.names);
 }
 
 /// Steps with `dt ∝ r^{3/2}` end with the second revolution, and are of second order in their number.

@@ -321,7 +321,7 @@ fn the_satellite_of_the_guide() {
     assert_eq!(lines(&told), lines(of_run));
     assert_eq!(printed(&folder, &["ensemble", "satellite.toml"]), of_ensemble);
     let again = printed(&folder, &["report", "satellite.toml"]);
-    assert_eq!(lines(&again).replace("0 of them now", "60 of them now"), of_ensemble.trim_end());
+    assert_eq!(lines(&again).replace("0 of them now", "35 of them now"), of_ensemble.trim_end());
     fs::write(folder.join("satellite.toml"), format!("{scene}{sweep}")).unwrap();
     printed(&folder, &["sweep", "satellite.toml"]);
     let table = fs::read_to_string(folder.join("out/satellite.sweep.csv")).unwrap();

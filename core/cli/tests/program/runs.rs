@@ -311,8 +311,12 @@ fn events_of_a_sweep() {
                 run.step = 0.07\nrun.duration = 7\nrun.method = { splitting = \"Strang\" }\noutput.columns = []\n\
                 sweep.start.velocity = [[2, 0, 0], [0, 0, 1]]\n[[event]]\nname = \"low\"\ntilt = \"60 deg\"\n";
     fs::write(folder.join("ball.toml"), text).unwrap();
-    printed(&folder, &["sweep", "ball.toml", "--out", "."]);
+    let told = printed(&folder, &["sweep", "ball.toml", "--out", "."]);
     let table = fs::read_to_string(folder.join("ball.sweep.csv")).unwrap();
+    // The table is printed with fewer digits.
+    let words: Vec<Vec<&str>> = told.lines().take(3).map(|line| line.split_whitespace().collect()).collect();
+    assert!(words[0].ends_with(&["low_times", "low_first"]) && words[2].ends_with(&["0", "NaN"]), "{told}");
+    assert!(words[1].starts_with(&["2", "0", "0"]) && words[1].ends_with(&["5", "0.523599"]), "{told}");
     let rows: Vec<Vec<_>> = table.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(rows[0][4..], ["low_times", "low_first"]);
     assert_eq!((rows[1][0], rows[1][4]), ("2 0 0", "5.0"));
@@ -330,7 +334,9 @@ fn sweeps() {
     let folder = folder("sweeps");
     let sweep = "[sweep]\ngravity.m = [\"1 kg\", 1.5]\ndrag.c = { from = 0.001, to = 0.002, count = 3 }\n[run]";
     fs::write(folder.join("sweep.toml"), TOP.replace("[run]", sweep)).unwrap();
-    printed(&folder, &["sweep", "sweep.toml", "--out", "."]);
+    let told = printed(&folder, &["sweep", "sweep.toml", "--out", "."]);
+    assert!(told.lines().take(7).all(|line| line.len() <= 110), "{told}");
+    assert!(told.lines().nth(7).unwrap().ends_with("more columns are in sweep.sweep.csv"), "{told}");
     let table = fs::read_to_string(folder.join("sweep.sweep.csv")).unwrap();
     let mut lines = table.lines();
     assert!(lines.next().unwrap().starts_with("gravity.m,drag.c,t,velocity_x,"));

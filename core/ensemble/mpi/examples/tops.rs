@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! mpirun -n 4 tops shared/out          all chunks that are missing
-//! tops shared/out --shard 2/8          a share of them, by threads: for arrays of jobs, in the same folder
+//! tops shared/out --share 2/8          a share of them, by threads: for arrays of jobs, in the same folder
 //!
 //! Options: --threads N of a share, as many as there are cores without it; --members N; --panics N, a member whose function
 //! panics; --tells, the progress
@@ -36,7 +36,7 @@ fn tops(members: u64, panics: u64) -> Ensemble<Stepper<Sum<PrincipalBody, Gravit
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut words = std::env::args().skip(1);
-    let folder = words.next().ok_or("tops FOLDER [--shard I/N] [--threads N] [--members N]")?;
+    let folder = words.next().ok_or("tops FOLDER [--share I/N] [--threads N] [--members N]")?;
     let (mut members, mut threads, mut share, mut panics, mut tells) = (6_000, 0, None, u64::MAX, false);
     while let Some(option) = words.next() {
         if option == "--tells" {
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
         let value = words.next().ok_or_else(|| format!("`{option}` has no value"))?;
         match option.as_str() {
-            "--shard" => share = Some(share_of(&value)?),
+            "--share" => share = Some(share_of(&value)?),
             "--threads" => threads = value.parse()?,
             "--members" => members = value.parse()?,
             "--panics" => panics = value.parse()?,

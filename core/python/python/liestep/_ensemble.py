@@ -204,6 +204,9 @@ class Ensemble:
     ) -> Many:
         """Makes what is missing in a folder, and reads what is there then.
 
+        A folder of fewer members of the same ensemble goes on; of one with more the first members are read. Ctrl-C stops a
+        run, and its message says what is kept.
+
         Parameters
         ----------
         folder : path
@@ -217,7 +220,7 @@ class Ensemble:
         share : str
             ``"1/4"``: only this one of four shares, the rest being left to others.
         chunk : int, optional
-            The members of a file.
+            The members of a file; by default few in the first files and more in later ones.
         progress : bool or callable
             Whether a terminal shows how far it is, or what to tell it: the chunks that are there, and all.
 

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::file::column::Column;
 use crate::file::effects::EFFECTS;
 use crate::file::histogram::{self, EndHistogram};
 use crate::file::mistake::SpanMessage;
@@ -29,8 +30,13 @@ pub struct SceneEnsemble {
     pub chunk: Option<u64>,
     /// The histograms of columns at the ends of members.
     pub histograms: Vec<EndHistogram>,
-    /// The text of the whole file, with the values of its signals behind it, which identifies the ensemble.
-    pub text: String,
+    /// The columns of members: those that the file lists, or those of its runs that a member has.
+    pub columns: Vec<Column>,
+    /// A text that identifies the ensemble: the file's values but its title and the number of members, and those of its
+    /// signals.
+    pub identity: String,
+    /// The text of the whole file.
+    pub(crate) text: String,
     pub(crate) axes: Vec<Axis>,
     pub(crate) path: PathBuf,
     /// The tables with drawn values, to be put into the member `like`. Without such a member, as for several bodies, all tables
@@ -157,6 +163,8 @@ pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -
         every: None,
         chunk: None,
         histograms: Vec::new(),
+        columns: Vec::new(),
+        identity: String::new(),
         text,
         axes: Vec::new(),
         path,

@@ -74,44 +74,89 @@ impl SceneEnsemble {
     }
 }
 
-/// The signals of a file as lines behind its text, which identifies an ensemble: those of tables beside the scene, too.
-fn signals(file: &SceneFile) -> impl Iterator<Item = String> {
+/// The text that identifies an ensemble: the values of its file, without those by which no member changes, and those of
+/// signals, which may be in tables beside the file. Comments and the order of keys are left out, too.
+fn identity(text: &str, file: Option<&SceneFile>) -> String {
+    let mut values = text.parse::<toml::Table>().unwrap_or_default();
+    values.remove("title");
+    values.get_mut("ensemble").and_then(toml::Value::as_table_mut).and_then(|own| own.remove("members"));
     let of_wheel = |wheel: &Wheel| if let Motor::Signal(signal) = &wheel.motor { Some(signal.clone()) } else { None };
-    let over_time = file.over_time.iter().filter_map(|one| one.signal().cloned());
-    let all: Vec<_> = over_time.chain(file.wheel.iter().filter_map(of_wheel)).collect();
-    all.into_iter().map(|signal| format!("\n# {signal:?}"))
+    let signals = file.into_iter().flat_map(|file| {
+        let over_time = file.over_time.iter().filter_map(|one| one.signal().cloned());
+        over_time.chain(file.wheel.iter().filter_map(of_wheel))
+    });
+    let signals: String = signals.map(|signal| format!("\n# {signal:?}")).collect();
+    format!("{values}{signals}")
+}
+
+/// The parts of a scene by which members have columns and events, or not.
+struct Parts<'a> {
+    events: &'a [Event],
+    /// Whether something changes with time, so that the energy isn't known between two steps.
+    changes: bool,
+    /// The place of the first number that is read by what a member may draw.
+    first: usize,
+    /// Whether joints have limits, which are events.
+    is_limited: bool,
+}
+
+impl<'a> Parts<'a> {
+    fn of(scene: &'a Scene) -> Self {
+        match &scene.content {
+            Content::Body(file) => {
+                let (changes, first) = (file.changing().is_some(), file.group.energy() + 2);
+                Self { events: &file.event, changes, first, is_limited: false }
+            }
+            Content::System(system) => {
+                let (first, is_limited) = (system.joint_columns(), system.limited().next().is_some());
+                Self { events: &system.event, changes: false, first, is_limited }
+            }
+        }
+    }
+}
+
+/// Whether a column is read by what a member may draw: an orbit, an axis, a wheel, a joint.
+fn is_read_by_draws(column: &Column) -> bool {
+    ["pointing", "roll-pitch-yaw", "wheel-speeds", "angle", "shift", "torque"].contains(&column.key())
+}
+
+/// The columns of a run that members have, too.
+fn default_columns(ensemble: &SceneEnsemble, scene: &Scene) -> Vec<Column> {
+    let Parts { events, changes, .. } = Parts::of(scene);
+    let (has_events, draws) = (scene.events().next().is_some(), ensemble.draws_what_columns_read());
+    let is_known = |column: &&Column| {
+        let is_unknown_between = changes && column.key() == "energy" && !events.is_empty();
+        !(column.is_since_the_start() || is_unknown_between || draws && has_events && is_read_by_draws(column))
+    };
+    scene.columns().iter().filter(is_known).cloned().collect()
 }
 
 /// Conflicts with columns: those that a member has none of, and those that its events can't know; `at` finds the place of keys.
 fn of_columns(ensemble: &SceneEnsemble, scene: &Scene, at: &dyn Fn(&[&str]) -> Range<usize>) -> Option<SpanMessage> {
     let wrong = |keys: &[&str], message: String| Some((at(keys), message));
-    if let Some(column) = scene.columns().iter().find(|column| column.is_since_the_start()) {
+    let columns = &ensemble.columns;
+    if let Some(column) = columns.iter().find(|column| column.is_since_the_start()) {
         let names = column.names().collect::<Vec<_>>().join(", ");
         let why = "is measured from the start of a run; leave it out";
         return wrong(&["output", "columns"], format!("an ensemble keeps states, and `{names}` {why}"));
     }
-    let names: Vec<&str> = scene.columns().iter().flat_map(Column::names).collect();
+    let names: Vec<&str> = columns.iter().flat_map(Column::names).collect();
     if let Some(one) = ensemble.histograms.iter().find(|one| !names.contains(&one.column.as_str())) {
         let message = format!("the `columns` of the file have no `{}`, but {}", one.column, names.join(", "));
         return Some((one.span.clone(), message));
     }
-    // Numbers from this place on are read by what a member may draw.
-    let (events, changes, first, is_limited) = match &scene.content {
-        Content::Body(file) => (&file.event, file.changing().is_some(), file.group.energy() + 2, false),
-        Content::System(system) => (&system.event, false, system.joint_columns(), system.limited().next().is_some()),
-    };
-    let names_energy = |event: &Event| matches!(event.quantity, Quantity::Energy(_));
-    let keeps_energy = scene.columns().iter().any(|column| column.key() == "energy");
-    if changes && (events.iter().any(names_energy) || keeps_energy && !events.is_empty()) {
-        let message = "where something changes with time the energy of a member isn't known between its steps, where events are: leave `energy` out of `columns` and events, or `ensemble` out of the file";
-        return wrong(&["output", "columns"], message.to_owned());
+    let Parts { events, changes, first, is_limited } = Parts::of(scene);
+    let why = "where something changes with time the energy of a member isn't known between its steps, where events are: leave";
+    if changes && !events.is_empty() && columns.iter().any(|column| column.key() == "energy") {
+        return wrong(&["output", "columns"], format!("{why} `energy` out of `columns`, or the event out of the file"));
     }
-    let read = ["pointing", "roll-pitch-yaw", "wheel-speeds", "angle", "shift", "torque"];
-    let is_read = |column: &Column| read.contains(&column.key());
+    if changes && events.iter().any(|event| matches!(event.quantity, Quantity::Energy(_))) {
+        return wrong(&["event"], format!("{why} the event out of the file, or `ensemble`"));
+    }
     let is_seen = |event: &Event| matches!(event.quantity, Quantity::Column(place, _) | Quantity::Angle(place, _) if place >= first);
     let has_events = scene.events().next().is_some();
     if ensemble.draws_what_columns_read()
-        && (is_limited || events.iter().any(is_seen) || has_events && scene.columns().iter().any(is_read))
+        && (is_limited || events.iter().any(is_seen) || has_events && columns.iter().any(is_read_by_draws))
     {
         let message = "an event knows the orbit, the angles, the wheels and the joints of the file, not those that a member draws: \
                        leave the columns of angles, wheels and joints out, or the event, or draw something else";
@@ -130,7 +175,10 @@ pub(crate) fn read(
     let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut ensemble = parts((path, text), table).map_err(located)?;
     let file = if let Content::Body(file) = &scene.content { Some(&**file) } else { None };
-    ensemble.text.extend(file.into_iter().flat_map(signals));
+    ensemble.identity = identity(text, file);
+    let output = document.get_ref().get("output").and_then(|output| output.get_ref().as_table());
+    let lists = output.is_some_and(|output| output.contains_key("columns"));
+    ensemble.columns = if lists { scene.columns().to_vec() } else { default_columns(&ensemble, scene) };
     let wrong = |keys: &[&str], message: String| Err(located((span(document, keys), message)));
     if scene.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());

@@ -1,0 +1,32 @@
+//! Ctrl-C: the first one stops an ensemble at its next steps, the second one ends the program.
+
+use std::io;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use signal_hook::consts::SIGINT;
+use signal_hook::flag::{register, register_conditional_shutdown};
+
+/// The exit code of a program that Ctrl-C has ended.
+pub(crate) const CODE: i32 = 130;
+
+/// Sets `stop` by the first Ctrl-C from now on. The program ends by a second one, or by the first one if it is set already.
+pub(crate) fn sets(stop: &Arc<AtomicBool>) -> io::Result<()> {
+    register_conditional_shutdown(SIGINT, CODE, Arc::clone(stop))?;
+    register(SIGINT, Arc::clone(stop)).map(drop)
+}
+
+/// This program's command line, as a shell reads it.
+pub(crate) fn command_line() -> String {
+    let words = std::env::args_os().map(|word| quoted(&word.to_string_lossy()));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+fn quoted(word: &str) -> String {
+    let is_plain = |letter: char| letter.is_alphanumeric() || "-_./=:,+@%".contains(letter);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
