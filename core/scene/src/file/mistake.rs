@@ -97,7 +97,7 @@ fn is_xml(path: &Path) -> String {
 }
 
 /// Words of other programs, each with the name that it stands for here, and advice for where that name is expected.
-const OTHER_WORDS: [(&str, &str, &str); 27] = [
+const OTHER_WORDS: [(&str, &str, &str); 28] = [
     ("hinge", "pin", "a hinge is a `pin`"),
     ("revolute", "pin", "a revolute joint is a `pin`"),
     ("spherical", "ball", "a spherical joint is a `ball`"),
@@ -109,7 +109,12 @@ const OTHER_WORDS: [(&str, &str, &str); 27] = [
     ("fixed", "weld", "a fixed joint is a `weld`"),
     ("world", "space", "the world is `space`"),
     ("ground", "space", "the ground is `space`"),
-    ("gravitation", "gravity", "a weight is `gravity`, and a planet's pull that turns a body is `gravity_gradient`"),
+    (
+        "gravitation",
+        "gravity_gradient",
+        "a weight is `gravity`, and a planet's pull that turns a body is `gravity_gradient`",
+    ),
+    ("gravitation", "gravity", "a weight is `gravity`"),
     ("flywheel", "wheel", "a flywheel in the body is a `wheel`"),
     ("wheel", "rotor", "a wheel that keeps its spin is a `rotor` of the body"),
     ("wheel", "joint", "a wheel that keeps its spin is a `rotor` of its `[[body]]`"),
