@@ -186,7 +186,7 @@ impl<'c, 'a, M: Plant> Search<'c, 'a, M> {
         #[allow(clippy::cast_precision_loss)]
         let count = self.sides.len().max(1) as f64;
         self.barrier = if self.sides.is_empty() { 0.0 } else { 0.1 * cost / count };
-        self.least_barrier = (1e-9 * self.barrier).min(0.1 * self.control.tolerance);
+        self.least_barrier = (1e-9 * self.barrier).min(0.1 * self.control.tolerance.max(0.0));
         for side in &mut self.sides {
             side.multiplier = self.barrier / side.distance(&self.course);
         }

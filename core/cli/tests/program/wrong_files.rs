@@ -25,11 +25,12 @@ fn control_characters_are_written_out() {
 #[test]
 fn files_of_another_kind() {
     let folder = folder("kinds");
-    let contents: [(&str, Vec<u8>); 5] = [
+    let contents: [(&str, Vec<u8>); 6] = [
         ("empty", Vec::new()),
         ("mark", [b"\xef\xbb\xbf", TOP.replace("[drag]", "[darg]").as_bytes()].concat()),
         ("bytes", [b"title = \"\xc3\xb6 \xff\"", TOP.as_bytes()].concat()),
         ("nested", [b"title = ".as_slice(), &b"[".repeat(100_000)].concat()),
+        ("model", b"\xef\xbb\xbf\n<?xml version=\"1.0\"?>\n<robot name=\"arm\"/>\n".to_vec()),
         ("table", b"[[body]]\nmoments = [3, 3, 4]\n".to_vec()),
     ];
     let messages = contents.map(|(name, content)| {
@@ -40,10 +41,11 @@ fn files_of_another_kind() {
         String::from_utf8(output.stderr).unwrap()
     });
     expect![[r"
-        error: empty.toml:1:1: missing field `title`
+        error: empty.toml:1:1: missing field `start`
         error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `start`, `run`, `orbit`, `pointing`, `picture`, `event`, `output`, `lagrangian`, `hamiltonian`, `force`, `nonholonomic`, `control`, `wheel`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `air_drag`, `torque`, `thrust`, `magnetic_damping`; did you mean `drag`?
         error: bytes.toml:1:12: isn't a text in UTF-8
         error: nested.toml:1:89: cannot recurse further; max recursion depth met
+        error: model.toml:2:1: is XML, and a scene is TOML: `liestep import model.toml` makes one of a robot's model, of URDF
         error: table.toml:1:1: missing field `name`
     "]].assert_eq(&messages.concat());
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from .errors import DeclarationError, Error, SetupError
@@ -25,10 +26,25 @@ def floats(name: str, value: Any, error: type[Error]) -> Array:
         if is_plain or array.dtype.kind == "O" and all(map(_is_real, array.flat)):
             return np.asarray(array, dtype=float)
         raise TypeError
-    except (TypeError, ValueError, OverflowError) as cause:
+    except Exception as cause:
         if isinstance(cause, Error):
             raise
-        raise error(f"`{name}` is a number, a vector or a matrix of numbers, not {value!r:.80}") from cause
+        raise error(f"`{name}` is a number, a vector or a matrix of numbers, not {shown(value)}") from cause
+
+
+def shown(value: Any, by: Callable[[Any], str] = repr) -> str:
+    """An object in a message, in 80 letters at most; the name of its type where it has no text."""
+    try:
+        return by(value)[:80]
+    except Exception:
+        return f"an object of the type {type(value).__name__}"
+
+
+def by_names(name: str, values: Any) -> Mapping[str, Any]:
+    """Values by their names; nothing where none are given."""
+    if values is None or isinstance(values, Mapping):
+        return values or {}
+    raise SetupError(f"`{name}` has values by their names, as {{\"velocity\": …}}, and isn't {shown(values)}")
 
 
 def _is_real(one: Any) -> bool:
@@ -61,12 +77,16 @@ def vector(name: str, value: Any) -> list[float]:
 def whole(name: str, value: Any, least: int, most: int) -> int:
     """A whole number between two."""
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise SetupError(f"`{name}` is a whole number from {least} to {most:g}, not {value!r:.80}")
+        raise SetupError(f"`{name}` is a whole number from {least} to {most:g}, not {shown(value)}")
     return value
 
 
 def text(name: str, value: Any) -> str:
     """A text."""
     if not isinstance(value, str):
-        raise DeclarationError(f"`{name}` is a text, not {value!r:.80}")
+        raise DeclarationError(f"`{name}` is a text, not {shown(value)}")
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise DeclarationError(f"`{name}` is a text, and {value!a:.80} has half of a character") from None
     return value

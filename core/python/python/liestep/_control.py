@@ -9,7 +9,7 @@ from math import cos, inf
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._arrays import floats, number, whole
+from ._arrays import floats, number, shown, whole
 from ._declared import Sum
 from ._run import Columns, Run
 from ._stepper import _numbers, _Start, _start
@@ -112,9 +112,9 @@ def _components(axes: Any, dimension: int, is_body: bool) -> list[int]:
     try:
         named = ["xyz".index(axis) for axis in axes] if isinstance(axes, str) and is_body else [operator.index(k) for k in axes]
     except (TypeError, ValueError) as error:
-        raise SetupError(f"`axes` are {known}, not {axes!r:.80}") from error
+        raise SetupError(f"`axes` are {known}, not {shown(axes)}") from error
     if not named or any(not 0 <= k < dimension for k in named):
-        raise SetupError(f"`axes` are {known}, not {axes!r:.80}")
+        raise SetupError(f"`axes` are {known}, not {shown(axes)}")
     return named
 
 
@@ -216,7 +216,7 @@ class Control:
         import numpy as np
 
         if term.role != "lagrangian" or term.has_pace or term._signals():
-            raise SetupError(f"a plan is one of a Lagrangian without a pace or a signal, and not of {term!r:.80}")
+            raise SetupError(f"a plan is one of a Lagrangian without a pace or a signal, and not of {shown(term)}")
         whole("steps", steps, 1, 10**6)
         named: list[str] = []
         if inputs is None:
@@ -253,7 +253,7 @@ class Control:
             cones.append((one, other, cos(angle)))
         length = number("step", step)
         if not 0 < length < inf:
-            raise SetupError(f"`step` is a length above zero, s, not {step!r:.80}")
+            raise SetupError(f"`step` is a length above zero, s, not {shown(step)}")
         self.term, self.steps, self.step = term, steps, length
         end = _start(goal, () if goal_velocity is None else goal_velocity)
         self._task = _Task(self.step, steps, _start(start, velocity), end, goal_velocity is None, along, named, forces.tolist(), cones,

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from . import _native
-from ._arrays import floats, number, whole
+from ._arrays import floats, number, shown, whole
 from ._declared import Sum
 from ._run import Columns
 from ._stepper import Stepper, _Start, _start
@@ -158,7 +158,7 @@ class Ensemble:
         whole("members", members, 1, 10**9)
         whole("seed", seed, 0, 2**63 - 1)
         if method is not None and not isinstance(method, dict):
-            raise SetupError(f'a method is one of `liestep.Stepper`, as {{"composition": "Suzuki 4"}}, not {method!r:.80}')
+            raise SetupError(f'a method is one of `liestep.Stepper`, as {{"composition": "Suzuki 4"}}, not {shown(method)}')
         self.stepper = Stepper(term, step, **(method or {}))
         for name, signal in term._signals().items():
             if signal.is_function:
@@ -174,7 +174,7 @@ class Ensemble:
                 self._draws += [_Draw(name, place, at, spread.kind, *pair) for place, pair in pairs]
                 start[name] = list(spread.first)
             elif name in drawn:
-                raise SetupError(f"`{name}` is drawn from `ls.normal(…)` or `ls.uniform(…)`, not from {spread!r:.80}")
+                raise SetupError(f"`{name}` is drawn from `ls.normal(…)` or `ls.uniform(…)`, not from {shown(spread)}")
         self._start: _Start = _start(None if self._turns else start["attitude"], start["velocity"])
 
     def _numbers_of(self, name: str, spread: Spread) -> list[int]:
@@ -234,7 +234,7 @@ class Ensemble:
             if steps is not None:
                 whole(name, steps, 1, 2**63 - 1)
         if not isinstance(share, str):
-            raise SetupError(f'a share is a text, as "1/4", not {share!r:.80}')
+            raise SetupError(f'a share is a text, as "1/4", not {shown(share)}')
         shown = _bar if progress is True else None if progress is False else progress
         term, (kind, scheme, *rest) = self.stepper.term, self.stepper.method
         # One plan is told from another by all that it is made of.

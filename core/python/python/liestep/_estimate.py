@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._arrays import floats, number, whole
+from ._arrays import by_names, floats, number, shown, whole
 from ._control import _components, chosen
 from ._declared import Sum, _shaped
 from ._run import Run, rotations
@@ -206,12 +206,12 @@ def estimate(
     import numpy as np
 
     if term.role != "lagrangian" or term.has_pace or term._signals():
-        raise SetupError(f"an estimate is one of a Lagrangian without a pace or a signal, and not of {term!r:.80}")
+        raise SetupError(f"an estimate is one of a Lagrangian without a pace or a signal, and not of {shown(term)}")
     whole("every", every, 1, 10**6)
     whole("iterations", iterations, 0, 2**31 - 1)
     if first is not None:
         whole("first", first, 2, 2**31 - 1)
-    if not readings:
+    if not by_names("readings", readings):
         raise SetupError('an estimate has readings: `{"velocity": (values, deviation)}`')
     lists, steps = [], None
     for name, given in readings.items():
@@ -236,7 +236,7 @@ def estimate(
         at[name] = range(place, place + len(own))
         place += len(own)
     is_constrained = any(summand.derived().role == "nonholonomic" for summand in term.summands)
-    for name, deviation in (known or {}).items():
+    for name, deviation in by_names("known", known).items():
         if name == "momentum" and is_constrained:
             raise SetupError("beside constraints on velocities what is `known` is about the attitude and parameters: leave `momentum` out")
         if name not in at:
@@ -249,7 +249,7 @@ def estimate(
     if force is not None:
         along = _components(axes, n, term.group == "SO3")
         spread = np.broadcast_to(floats("force", force, SetupError), (len(along),)).tolist()
-    for name, deviation in (inputs or {}).items():
+    for name, deviation in by_names("inputs", inputs).items():
         if force is not None:
             raise SetupError("unknown inputs are a `force` beside the term, or `inputs` that are its parameters")
         own_places, _ = chosen(term, name)

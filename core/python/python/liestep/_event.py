@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _native
-from ._arrays import number
+from ._arrays import number, shown
 from ._state import matrices
 from .errors import SetupError
 
@@ -87,6 +87,6 @@ def watch(text: Any) -> Watch:
         return Watch("", _numbers(text), 0.0, (direction > 0) - (direction < 0), stops)
     found = _EVENT.fullmatch(text) if isinstance(text, str) else None
     if found is None:
-        raise SetupError(f'{text!r} is no event: write "tilt > 60 deg", "energy < 3", "velocity_x = 0, stop", or a function')
+        raise SetupError(f'{shown(text)} is no event: write "tilt > 60 deg", "energy < 3", "velocity_x = 0, stop", or a function')
     direction = {">": 1, "<": -1, "=": 0}[found["sign"]]
     return Watch(found["of"], None, float(found["value"]) * _size(found["of"], found["unit"]), direction, bool(found["stop"]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._arrays import floats
+from ._arrays import floats, shown, text
 from ._declared import Summand, _value
 from ._orbit import Orbit
 from ._signal import Signal, diagonal
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 def _term(name: str, *directions: str, **parameters: Any) -> Term:
-    text = _native.library(name)
-    if text is None:
+    declaration = _native.library(name)
+    if declaration is None:
         raise DeclarationError(f"the library has no `{name}`")
     numbers = {field: _value(field, value) for field, value in parameters.items()}
-    return Term.of(*Summand.of(text, numbers, name, directions))
+    return Term.of(*Summand.of(declaration, numbers, name, directions))
 
 
 def nonstandard(J: Any) -> Any:
@@ -88,13 +88,17 @@ def body(J: Any, *, kinetic: str = "rigid", effective: bool = False) -> Term:
     >>> ls.body([3, 3, 4]).name
     'rigid_body'
     """
+    import numpy as np
+
+    if not isinstance(effective, (bool, np.bool_)):
+        raise DeclarationError(f"`effective` is true or false, not {shown(effective)}")
     if not effective:
         _check_body(J)
-    if kinetic == "rigid":
+    if text("kinetic", kinetic) == "rigid":
         return _term("rigid_body", J_d=nonstandard(J))
     if not _native.library(f"{kinetic}_body"):
         known = '"rigid", "cayley", "geodesic", "fourth_order", "sixth_order"'
-        raise DeclarationError(f"`kinetic` is one of {known}, not {kinetic!r}")
+        raise DeclarationError(f"`kinetic` is one of {known}, not {shown(kinetic)}")
     return _term(f"{kinetic}_body", J=J)
 
 

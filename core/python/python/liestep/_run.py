@@ -43,17 +43,17 @@ class Columns:
     def __getitem__(self, name: str) -> Array:
         import numpy as np
 
-        if name not in self._names:
-            raise ColumnError(f"there is no column {name!r}: there are {', '.join(self._names)}")
+        if not isinstance(name, str) or name not in self._names:
+            raise ColumnError(f"there is no column {_arrays.shown(name)}: there are {', '.join(self._names)}")
         return np.asarray(self._table.view(self._names.index(name), None))
 
     def group(self, start: str) -> Array:
         """The columns that begin with this, a row for each row; none of them is copied where they stand side by side."""
         import numpy as np
 
-        places = [place for place, name in enumerate(self._names) if name.startswith(str(start))]
+        places = [place for place, name in enumerate(self._names) if isinstance(start, str) and name.startswith(start)]
         if not places:
-            raise ColumnError(f"no column begins with {start!r}: there are {', '.join(self._names)}")
+            raise ColumnError(f"no column begins with {_arrays.shown(start)}: there are {', '.join(self._names)}")
         if places[-1] - places[0] >= len(places):
             return np.stack([self[self._names[place]] for place in places], axis=1)
         return np.asarray(self._table.view(places[0], len(places)))
@@ -361,6 +361,8 @@ class Scene:
     """A scene's file; see `liestep.scene`."""
 
     def __init__(self, path: str | Path, text: str | None = None) -> None:
+        if not isinstance(path, (str, Path)):
+            raise SceneError(f"a scene is made of a file's name, or of tables, not of {_arrays.shown(path)}")
         self._path, self._text = str(path), None if text is None else _arrays.text("text", text)
         self._file = _native.File(self._path, text)
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._arrays import floats
+from ._arrays import floats, shown
 from .errors import SceneError, SetupError
 
 if TYPE_CHECKING:
@@ -101,7 +101,7 @@ class Signal:
     def table(self) -> dict[str, Any]:
         """The signal as a scene's file has it."""
         times, values, between = self._source
-        if between not in ("steps", "lines"):
+        if not isinstance(between, str) or between not in ("steps", "lines"):
             raise SceneError("a file has signals by values: write `ls.signal(times, function, between=…)`")
         return {"times": times, "values": values, "between": between}
 
@@ -204,8 +204,8 @@ def signal(times: Any, values: Any = None, *, between: str | None = None) -> Sig
         return Signal(None, times, None)
     if callable(times):
         raise SetupError("a signal is a function of an array of times alone, or has `times`, `values` and `between`")
-    if between not in ("steps", "lines"):
-        raise SetupError(f'`between` is "steps", where a value holds, or "lines", not {between!r:.80}')
+    if not isinstance(between, str) or between not in ("steps", "lines"):
+        raise SetupError(f'`between` is "steps", where a value holds, or "lines", not {shown(between)}')
     asked = floats("times", times, SetupError)
     if asked.ndim != 1:
         raise SetupError(f"`times` is a list of times, not an array of the shape {asked.shape}")

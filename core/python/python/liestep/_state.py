@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from . import _native
-from ._arrays import floats, text, whole
+from ._arrays import floats, shown, text, whole
 from .errors import SetupError
 
 if TYPE_CHECKING:
@@ -213,7 +213,7 @@ def _named(name: str, values: Any) -> _native.Named:
     if not isinstance(values, Mapping):
         if values is None:
             return []
-        raise SetupError(f'`{name}` of several bodies is by names, as {{"elbow": 0.3}}, not {values!r:.80}')
+        raise SetupError(f'`{name}` of several bodies is by names, as {{"elbow": 0.3}}, not {shown(values)}')
     return [(text(name, key), floats(name, value, SetupError).ravel().tolist()) for key, value in values.items()]
 
 

@@ -8,7 +8,7 @@ from math import ceil, hypot, inf, isfinite
 from typing import Any
 
 from . import _native
-from ._arrays import floats, number, whole
+from ._arrays import floats, number, shown, whole
 from ._declared import Sum
 from ._event import Moment, Watch, watch
 from ._gradient import Origin
@@ -39,10 +39,9 @@ def _attitude(value: Any) -> tuple[list[float], bool]:
         # SciPy's Rotation has its scalar last.
         x, y, z, w = _numbers("attitude", value.as_quat(), ((4,),))
         return [w, x, y, z], True
-    if isinstance(value, (list, tuple)) and value and all(np.ndim(part) == 2 for part in value):
+    if type(value) in (list, tuple) and value and all(isinstance(part, (list, tuple, np.ndarray)) and np.ndim(part) == 2 for part in value):
         return [number for part in value for number in _numbers("attitude", part)], False
-    numbers = _numbers("attitude", value)
-    return numbers, np.shape(value) == (4,)
+    return _numbers("attitude", value), floats("attitude", value, SetupError).shape == (4,)
 
 
 def euler(precession: float, nutation: float, spin: float = 0.0, *, degrees: bool = False) -> list[float]:
@@ -125,7 +124,7 @@ def _end(until: Any, times: list[float] | None, step: float | None) -> float:
 def _course(until: Any, every: Any, times: Any, events: Mapping[str, Any] | None, step: float | None) -> _Course:
     whole("every", every, 1, 2**63 - 1)
     if events is not None and not isinstance(events, Mapping):
-        raise SetupError(f'`events` are texts by names, as {{"low": "tilt > 60 deg"}}, not {events!r:.80}')
+        raise SetupError(f'`events` are texts by names, as {{"low": "tilt > 60 deg"}}, not {shown(events)}')
     watched = [watch(text) for text in (events or {}).values()]
     if times is None:
         return _Course(_end(until, None, step), every, None, watched)
@@ -139,15 +138,14 @@ def _course(until: Any, every: Any, times: Any, events: Mapping[str, Any] | None
 
 
 def _start(attitude: Any, velocity: Any, momentum: Any = None) -> _Start:
-    import numpy as np
-
     if (velocity is None) == (momentum is None):
         raise SetupError("a start has a `velocity`, or a `momentum` in its place")
     numbers, is_quaternion = _attitude(attitude)
     name, value = ("velocity", velocity) if momentum is None else ("momentum", momentum)
     flat = _numbers(name, value)
-    if np.ndim(value) > 1:
-        raise SetupError(f"`{name}` is a list of numbers, and has the shape {np.shape(value)}")
+    shape = floats(name, value, SetupError).shape
+    if len(shape) > 1:
+        raise SetupError(f"`{name}` is a list of numbers, and has the shape {shape}")
     return _Start(numbers, is_quaternion, flat, momentum is not None)
 
 
@@ -203,9 +201,9 @@ class Stepper:
             is_turn = isinstance(density, Mapping) and list(density) == ["turn"]
             floor = number("density", density["turn"]) if is_turn else 0.0
             if not 0 < floor < inf:
-                raise SetupError(f'a density is `{{"turn": velocity}}`, rad/s, above zero, not {density!r:.80}')
+                raise SetupError(f'a density is `{{"turn": velocity}}`, rad/s, above zero, not {shown(density)}')
             given["density"] = repr(floor)
-        named = [(kind, str(scheme)) for kind, scheme in given.items() if scheme is not None]
+        named = [(kind, shown(scheme, str)) for kind, scheme in given.items() if scheme is not None]
         if len(named) > 1:
             raise SetupError(f"one method at a time: {' and '.join(kind for kind, _ in named)} are two")
         whole("substeps", substeps, 1, 2**16 - 1)
@@ -293,7 +291,7 @@ class Stepper:
 
     def _given(self, parameters: Mapping[str, Any]) -> list[float]:
         if not isinstance(parameters, Mapping):
-            raise SetupError(f'`given` are values by the names of parameters, as {{"m": 2.0}}, not {parameters!r:.80}')
+            raise SetupError(f'`given` are values by the names of parameters, as {{"m": 2.0}}, not {shown(parameters)}')
         if any(isinstance(value, Signal) for value in parameters.values()):
             raise SetupError("`given` are values: a signal is a parameter of the term, as in `term.with_(m=ls.signal(…))`")
         return [number for _, numbers in self.term.with_(**parameters)._terms() for number in numbers]

@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ._arrays import floats
+from ._arrays import floats, shown
 from ._signal import Signal
 from .errors import SceneError
 
@@ -28,7 +28,7 @@ def written(tables: Mapping[str, Any]) -> str:
 
 def _text(text: Any) -> str:
     if not isinstance(text, str):
-        raise SceneError(f"keys of a scene are texts, not {text!r:.80}")
+        raise SceneError(f"keys of a scene are texts, not {shown(text)}")
     try:
         text.encode()
     except UnicodeEncodeError:
@@ -45,7 +45,7 @@ def _value(name: str, value: Any, depth: int) -> str:
         return str(value).lower()
     if isinstance(value, int):
         if not -(2**63) <= value < 2**63:
-            raise SceneError(f"`{name}` is a number, not {value!r:.80}")
+            raise SceneError(f"`{name}` is a number, not {shown(value)}")
         return str(value)
     if isinstance(value, Signal):
         return _value(name, value.table(), depth)

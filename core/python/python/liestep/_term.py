@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from ._arrays import floats, text
+from ._arrays import floats, shown, text
 from ._control import Control
 from ._declared import Group, Sum, Summand, Value, _value
 from ._ensemble import Ensemble
@@ -179,9 +179,11 @@ def _declared(
 ) -> Term:
     """A term of a text, whose mistakes have their lines."""
     own_text = text(head.rpartition(" ")[2], given)
-    for name, names in {"group": group, "advected": advected or {}}.items():
+    for name, names in {"group": group, "advected": {} if advected is None else advected}.items():
         if not isinstance(names, Mapping) and not (name == "group" and isinstance(names, str)):
-            raise DeclarationError(f"`{name}` are texts by names, as {{\"w\": \"up\"}}, not {names!r:.80}")
+            raise DeclarationError(f"`{name}` are texts by names, as {{\"w\": \"up\"}}, not {shown(names)}")
+        for one in [names] if isinstance(names, str) else [*names.keys(), *names.values()]:
+            text(name, one)
     on = f"group = {group}" if isinstance(group, str) else f"group({', '.join(f'{n} = {g}' for n, g in group.items())})"
     if generators is not None:
         on += f", generators = {_generators(group, generators)}"
@@ -290,10 +292,10 @@ def lagrangian(
         names = [name.strip() for name in text("velocity", velocity).split(",")]
         named = f"velocity = {names[0]}, " if len(names) == 1 else f"velocity({', '.join(names)}), "
         # A potential has none.
-        is_used = velocity != "Omega" or "Omega" in text("l", l)
-        head = f"{named if is_used else ''}discretise = {discretise}, l"
+        is_used = names != ["Omega"] or "Omega" in text("l", l)
+        head = f"{named if is_used else ''}discretise = {text('discretise', discretise)}, l"
     if pace is not None:
-        head = f"pace = {{ {pace} }}, {head}"
+        head = f"pace = {{ {text('pace', pace)} }}, {head}"
         numbers["E_0_of_the_start"] = Value("f64", (0.0,))
     return _declared("lagrangian", group, head, l_d if l is None else l, advected, numbers, generators)
 
@@ -328,8 +330,8 @@ def force(
     """
     numbers = {name: _value(name, value) for name, value in parameters.items()}
     head = "work"
-    if displacement:
-        head = f"displacement({displacement}), work"
+    if displacement is not None:
+        head = f"displacement({text('displacement', displacement)}), work"
     return _declared("force", group, head, work, advected, numbers, generators)
 
 
@@ -382,7 +384,7 @@ def nonholonomic(
     numbers = {name: _value(name, value) for name, value in parameters.items()}
     names = [name.strip() for name in text("velocity", velocity).split(",")]
     named = f"velocity = {names[0]}" if len(names) == 1 else f"velocity({', '.join(names)})"
-    return _declared("nonholonomic", group, f"{named}, discretise = {discretise}, zero", zero, advected, numbers, generators)
+    return _declared("nonholonomic", group, f"{named}, discretise = {text('discretise', discretise)}, zero", zero, advected, numbers, generators)
 
 
 def hamiltonian(

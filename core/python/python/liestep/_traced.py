@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from ._arrays import floats
+from ._arrays import floats, shown
 from ._declared import Carried, Sum
 from ._gradient import Covectors, Motion
 from ._run import Run, rotations
@@ -23,6 +23,8 @@ class Traced:
     """A motion as a function of its velocity at the start, of a turn of its attitude there, and of parameters."""
 
     def __init__(self, term: Sum, step: float, attitude: Any, rows: Mapping[str, Any], method: Mapping[str, Any]) -> None:
+        if not isinstance(term, Sum):
+            raise SetupError(f"a motion is that of a term, as `ls.body(J)`, and not of {shown(term)}")
         if term._signals() or term.has_pace:
             raise SetupError("a function with derivatives is one of a term without a signal or a pace: see `Run.gradient`")
         self.term, self.step, self._rows, self._method = term, step, dict(rows), dict(method)

@@ -23,7 +23,7 @@ pub(crate) struct Beginning {
     /// Whether the momentum is in the place of the velocity.
     pub(crate) is_by_momentum: bool,
     /// Whether the start is relative to the local vertical in the file; here it is in space.
-    is_relative: bool,
+    pub(crate) is_relative: bool,
 }
 
 /// Nothing: the table is read when the group is known.

@@ -164,6 +164,11 @@ impl Column {
         self.names.iter().map(|(name, _)| name.as_str())
     }
 
+    /// The unit of a number of this name.
+    pub(crate) fn unit(&self, name: &str) -> Option<&'static str> {
+        self.names.iter().find(|(own, _)| own == name).map(|(_, unit)| *unit)
+    }
+
     /// Whether the column measures from the start of a run, so that a state alone doesn't determine it.
     pub(crate) const fn is_since_the_start(&self) -> bool {
         matches!(self.numbers, SinceStart(_) | Change(_))

@@ -28,6 +28,8 @@ pub(crate) struct Controller {
     target: UnitQuaternion<f64>,
     /// Whether attitude and rate are relative to the local vertical.
     pub(crate) is_relative: bool,
+    /// Whether the law reads the attitude, and the file doesn't say relative to what.
+    has_no_frame: bool,
     readings: Vec<Reading>,
     parameters: Vec<Value>,
 }
@@ -190,13 +192,17 @@ impl Controller {
         let law = Law::parse(text.0, &names, kind).map_err(|message| (text.1, message))?;
         let every = optional::<PositiveScalar<Duration>>(table, "every")?.map(|every| every.value);
         let target = optional::<Attitude>(table, "target")?.map_or_else(UnitQuaternion::identity, |at| at.rotation());
-        let is_relative = match table.get("relative_to") {
-            Some(frame) if frame.get_ref().as_str() != Some("local vertical") => {
-                return Err((frame.span(), "a law is relative to space, or to the \"local vertical\"".to_owned()));
+        let frame = table.get("relative_to");
+        let is_relative = match frame.map(|frame| (frame.get_ref().as_str(), frame.span())) {
+            None | Some((Some("space"), _)) => false,
+            Some((Some("local vertical"), _)) => true,
+            Some((_, span)) => {
+                return Err((span, "a law is relative to \"space\", or to the \"local vertical\"".to_owned()));
             }
-            frame => frame.is_some(),
         };
-        Ok(Self { law, every, is_at_ends, target, is_relative, readings, parameters })
+        let mut words = text.0.split(|letter: char| !letter.is_alphanumeric() && letter != '_');
+        let has_no_frame = frame.is_none() && words.any(|word| ["q", "q_w"].contains(&word));
+        Ok(Self { law, every, is_at_ends, target, is_relative, has_no_frame, readings, parameters })
     }
 }
 
@@ -371,6 +377,11 @@ fn listed<'a>(document: &mut Document<'a>, name: &str) -> Result<Vec<(usize, DeT
 fn laws<'a>(controls: &'a [Control], wheels: &'a [Wheel]) -> impl Iterator<Item = (&'a Controller, &'a Range<usize>)> {
     let of_controls = controls.iter().map(|control| (&control.controller, &control.span));
     of_controls.chain(wheels.iter().filter_map(|wheel| Some((wheel.controller()?, &wheel.span))))
+}
+
+/// The place of the first law that reads the attitude, and doesn't say relative to what.
+pub(crate) fn of_no_frame<'a>(controls: &'a [Control], wheels: &'a [Wheel]) -> Option<&'a Range<usize>> {
+    laws(controls, wheels).find(|(law, _)| law.has_no_frame).map(|(_, span)| span)
 }
 
 /// The readings of all laws of a scene.

@@ -27,7 +27,7 @@ use crate::file::pointing::{Pointing, View};
 use crate::file::scene::{Origin, Places, SceneFile};
 use crate::file::schedule::{Pace, equal_steps};
 use crate::file::tables::{Document, has, span};
-use crate::file::text::check_name;
+use crate::file::text::{check_name, or_name};
 use crate::file::words::in_files;
 
 /// The scene of a document without a sweep and an ensemble.
@@ -46,6 +46,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     }
     let mut file =
         SceneFile::deserialize(Deserializer::from(rest)).map_err(|error| Mistake::of_toml(path, text, &error))?;
+    file.title = or_name(file.title, path);
     if file.body.is_none() && lagrangian.is_empty() && hamiltonian.is_empty() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
@@ -97,6 +98,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
         pace: at(&["run", pace]),
         method: at(&["run", "method"]),
         spring: at(&["spring"]),
+        law: file.law_of_no_frame().map_or((1, 1), |span| place_of(text, span)),
     };
     file.origin = Origin { path: path.to_owned(), places };
     Ok(file)

@@ -190,6 +190,10 @@ pub(crate) fn read(
         return wrong(&keys, format!("{why} `{}` end at different times: leave it out", keys[1]));
     }
     of_columns(&ensemble, scene, &|keys| span(document, keys)).map_or(Ok(()), Err).map_err(located)?;
+    for one in &mut ensemble.histograms {
+        let unit = scene.columns().iter().find_map(|column| column.unit(&one.column)).unwrap_or_default();
+        one.in_unit(unit).map_or(Ok(()), |message| Err(located((one.span.clone(), message))))?;
+    }
     let written = table.get_ref().as_table().and_then(|table| table.get("every"));
     if let (Some(every), Some(steps), Some(value)) = (ensemble.every, scene.steps(), written)
         && every > steps

@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::file::mistake::SpanMessage;
-use crate::file::quantity::{Any, in_si};
+use crate::file::quantity::{Any, in_si, ratio};
 use crate::file::tables::measured;
 
 /// The histogram of a column at the ends of an ensemble's members.
@@ -19,7 +19,7 @@ pub struct EndHistogram {
     pub range: Range<f64>,
     /// The ends of the range, in the unit of the file.
     pub written: [f64; 2],
-    /// The unit of the file; empty for numbers alone.
+    /// The unit of the file, or that of the column for numbers alone.
     pub unit: String,
     /// Number of equal parts of the range.
     pub parts: usize,
@@ -44,6 +44,24 @@ pub(crate) fn read(table: &Spanned<DeValue<'_>>) -> Result<Vec<EndHistogram>, Sp
     let mut all = columns.iter().map(of).collect::<Result<Vec<_>, _>>()?;
     all.sort_by_key(|one| one.span.start);
     Ok(all)
+}
+
+impl EndHistogram {
+    /// Gives ends without a unit that of the column. Returns a message where the file has a unit of another quantity.
+    pub(crate) fn in_unit(&mut self, of_column: &str) -> Option<String> {
+        // A gap combines a length with cosines.
+        let own = of_column.split(',').next().unwrap_or_default();
+        let known = if own == "1" { "" } else { own };
+        if self.unit.is_empty() {
+            known.clone_into(&mut self.unit);
+            return None;
+        }
+        let fits = own.is_empty() || ratio(&self.unit, known).is_some();
+        (!fits).then(|| match known {
+            "" => format!("`{}` has no unit, and these ends are in `{}`", self.column, self.unit),
+            known => format!("`{}` is in `{known}`, and these ends are in `{}`", self.column, self.unit),
+        })
+    }
 }
 
 fn histogram(column: &str, range: &DeTable<'_>, span: Range<usize>) -> Option<EndHistogram> {

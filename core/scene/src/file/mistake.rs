@@ -52,6 +52,10 @@ impl Mistake {
     }
 
     pub(crate) fn of_toml(path: &Path, text: &str, error: &toml::de::Error) -> Self {
+        let beginning = text.trim_start_matches('\u{feff}').trim_start();
+        if beginning.starts_with('<') {
+            return Self::at(path, place(text, text.len() - beginning.len()), is_xml(path));
+        }
         let start = error.span().map_or(0, |span| span.start);
         Self::at(path, place(text, start), advised(error.message()))
     }
@@ -87,8 +91,13 @@ impl Mistake {
     }
 }
 
+/// The message about a file of XML, as a robot's model.
+fn is_xml(path: &Path) -> String {
+    format!("is XML, and a scene is TOML: `liestep import {}` makes one of a robot's model, of URDF", path.display())
+}
+
 /// Words of other programs, each with the name that it stands for here, and advice for where that name is expected.
-const OTHER_WORDS: [(&str, &str, &str); 23] = [
+const OTHER_WORDS: [(&str, &str, &str); 28] = [
     ("hinge", "pin", "a hinge is a `pin`"),
     ("revolute", "pin", "a revolute joint is a `pin`"),
     ("spherical", "ball", "a spherical joint is a `ball`"),
@@ -100,11 +109,20 @@ const OTHER_WORDS: [(&str, &str, &str); 23] = [
     ("fixed", "weld", "a fixed joint is a `weld`"),
     ("world", "space", "the world is `space`"),
     ("ground", "space", "the ground is `space`"),
-    ("gravitation", "gravity", "a weight is `gravity`, and a planet's pull that turns a body is `gravity_gradient`"),
+    (
+        "gravitation",
+        "gravity_gradient",
+        "a weight is `gravity`, and a planet's pull that turns a body is `gravity_gradient`",
+    ),
+    ("gravitation", "gravity", "a weight is `gravity`"),
     ("flywheel", "wheel", "a flywheel in the body is a `wheel`"),
+    ("wheel", "rotor", "a wheel that keeps its spin is a `rotor` of the body"),
+    ("wheel", "joint", "a wheel that keeps its spin is a `rotor` of its `[[body]]`"),
     ("controller", "control", "a law of a torque is a `control`"),
     ("law", "control", "a law of a torque is a `control`"),
     ("damping", "drag", "damping against turning is `drag`"),
+    ("damping", "joint", "damping against turning is `drag` of a `[[body]]`, and in a `[[joint]]` it is `damping`"),
+    ("friction", "drag", "friction against turning is `drag`"),
     ("omega", "velocity", "the angular velocity is `velocity`, in the body"),
     ("matrix", "attitude", "the matrix of an attitude is `attitude`"),
     ("dcm", "attitude", "the matrix of an attitude is `attitude`, body to space"),

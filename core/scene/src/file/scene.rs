@@ -1,5 +1,6 @@
 //! The file of a scene with one body.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -87,7 +88,7 @@ macro_rules! scene_file {
 }
 
 effects! { scene_file
-    #[serde(deserialize_with = "title")]
+    #[serde(default, deserialize_with = "title")]
     pub(crate) title: String,
     /// A body of the library; none with a Lagrangian that has the kinetic energy.
     pub(crate) body: Option<Body>,
@@ -146,6 +147,8 @@ pub(crate) struct Places {
     pub(crate) pace: (usize, usize),
     pub(crate) method: (usize, usize),
     pub(crate) spring: (usize, usize),
+    /// Place of the first law that reads an attitude without saying relative to what.
+    pub(crate) law: (usize, usize),
 }
 
 impl SceneFile {
@@ -184,6 +187,11 @@ impl SceneFile {
     /// Whether laws or wheels turn the body.
     pub(crate) fn has_devices(&self) -> bool {
         !self.control.is_empty() || !self.wheel.is_empty()
+    }
+
+    /// The place of a law that reads the attitude in space where the start is relative to the local vertical.
+    pub(crate) fn law_of_no_frame(&self) -> Option<&Range<usize>> {
+        control::of_no_frame(&self.control, &self.wheel).filter(|_| self.start.is_relative)
     }
 
     /// The numbers that a sample has.

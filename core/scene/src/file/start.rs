@@ -136,13 +136,14 @@ impl<'de> Visitor<'de> for StartTable {
                 }
             }
         }
-        let attitude = attitude.ok_or_else(|| M::Error::custom(ATTITUDE))?;
         let velocity = match (velocity.ok_or_else(|| M::Error::custom(VELOCITY))?, attitude) {
             (Velocity::Body(velocity), _) => velocity,
-            (Velocity::EulerRates(rates), Attitude::Euler(angles)) => angles.velocity(&rates),
-            (Velocity::EulerRates(_), Attitude::Other(_)) => return Err(M::Error::custom(RATES)),
+            (Velocity::EulerRates(rates), Some(Attitude::Euler(angles))) => angles.velocity(&rates),
+            (Velocity::EulerRates(_), _) => return Err(M::Error::custom(RATES)),
         };
-        Ok(Start { attitude: attitude.rotation(), velocity })
+        // The axes of the body are those of space, or of the frame that the start is relative to.
+        let attitude = attitude.map_or_else(UnitQuaternion::identity, |attitude| attitude.rotation());
+        Ok(Start { attitude, velocity })
     }
 }
 

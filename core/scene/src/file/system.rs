@@ -23,13 +23,13 @@ use crate::file::placed::place;
 use crate::file::quantity::{Acceleration, Direction, Length, PositiveScalar, Scalar, Stiffness, Triple, round};
 use crate::file::schedule::Schedule;
 use crate::file::tables::{Document, has, span};
-use crate::file::text::{check_name, title};
+use crate::file::text::{check_name, or_name, title};
 
 /// Several bodies, with joints and springs between them.
 ///
 /// | table | keys |
 /// |---|---|
-/// | | `title` |
+/// | | `title`, by default the name of the file |
 /// | `[[body]]` | `name`; `m`, kg; one of `moments`, `J_d`, `J`, kg m², about the centre of mass, in the body's frame, where three zeros are those of a point mass; or a shape with its middle in the centre of mass, from which the inertia follows, with `m` or a `density`, kg/m³: a `box` by its edges, a `cylinder` or a `capsule` by the `radius` and the `length` of the cylinder and its `axis`, by default the third, a `sphere` by its `radius`, m; a shape beside an inertia is for the page alone; `kinetic`: `geodesic` by default, `rigid`, which is (3.13), or `cayley`; `position` of the centre of mass in space, m, and its velocity `moving`, m/s; `start` as for [one body](crate::SceneFile); without a position a body is placed by a joint with one that has a place; `dipole`, `rotor`, `drag`, `torque`, `magnetic_damping`, the effects that turn [one body](crate::SceneFile), with the same keys |
 /// | `gravity` | `g`, m/s²; `up`, in space |
 /// | `[[joint]]` | `name`, by which programs reach it, by default `joint-1` and so on; `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
@@ -88,7 +88,7 @@ pub(crate) struct Spring {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SystemTable {
-    #[serde(deserialize_with = "title")]
+    #[serde(default, deserialize_with = "title")]
     title: String,
     body: Vec<Spanned<BodyTable>>,
     gravity: Option<FieldTable>,
@@ -301,7 +301,7 @@ fn of_table(table: SystemTable, path: &Path, places: SystemPlaces) -> Result<Sys
     }
     let springs = springs_of(table.spring, (&bodies, &numbered))?;
     let mut system = System {
-        title: table.title,
+        title: or_name(table.title, path),
         bodies,
         gravity: table.gravity.map(|field| (field.g.value, field.up.0)),
         joints,

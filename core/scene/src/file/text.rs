@@ -30,10 +30,28 @@ fn beginning(path: &Path) -> io::Result<Vec<u8>> {
 /// Checks a name that is the prefix of columns, or that of one.
 pub(crate) fn check_name(of: &str, name: &str) -> Result<(), String> {
     let is_plain = !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter));
-    if is_plain { Ok(()) } else { Err(format!("the `name` of {of} has letters, digits, - and _ only")) }
+    if is_plain {
+        return Ok(());
+    }
+    let like = |letter: char| if letter.is_alphanumeric() || letter == '-' { letter } else { '_' };
+    let plain: String = name.chars().map(like).collect();
+    let advice = if plain.is_empty() { String::new() } else { format!(": write `{plain}`") };
+    Err(format!(
+        "the `name` of {of} has letters, digits, - and _ only, as keys and columns are made with it{advice}"
+    ))
+}
+
+/// A title, or the name of the file where there is none.
+pub(crate) fn or_name(title: String, path: &Path) -> String {
+    if title.is_empty() { path.file_stem().map_or(title, |name| one_line(&name.to_string_lossy())) } else { title }
+}
+
+/// A text in one line with its control characters written out.
+fn one_line(text: &str) -> String {
+    visible(text).replace('\n', "\\n").replace('\t', "\\t")
 }
 
 /// A title in one line with its control characters written out. A terminal would obey them, and SVG doesn't allow them.
 pub(crate) fn title<'de, D: Deserializer<'de>>(deserializer: D) -> Result<String, D::Error> {
-    String::deserialize(deserializer).map(|title| visible(&title).replace('\n', "\\n").replace('\t', "\\t"))
+    String::deserialize(deserializer).map(|title| one_line(&title))
 }

@@ -29,6 +29,13 @@ impl SceneFile {
         let why = fast_turn(self.turn_of_a_step().filter(|_| by_steps)?)?;
         Some((self.origin.places.body, why))
     }
+
+    /// A note about a law that reads the attitude in space beside a start relative to the local vertical.
+    fn two_frames(&self) -> Option<Note> {
+        let why = "this law reads attitude and velocity in space, and the start is relative to the local vertical: write \
+                   `relative_to = \"local vertical\"`, or `relative_to = \"space\"` if that is meant";
+        self.law_of_no_frame().map(|_| (self.origin.places.law, why.to_owned()))
+    }
 }
 
 impl Moving for SceneFile {
@@ -36,7 +43,8 @@ impl Moving for SceneFile {
         let of_kicks = self.check_kicks()?;
         let stepper = choose::by_steps(self, step)?;
         let state = self.start.state(&stepper).map_err(Stop::Start)?;
-        Ok(Begun { start: (stepper, state), notes: of_kicks.into_iter().chain(self.fast_turn()).collect() })
+        let notes = of_kicks.into_iter().chain(self.fast_turn()).chain(self.two_frames());
+        Ok(Begun { start: (stepper, state), notes: notes.collect() })
     }
 
     fn searched(&self, accuracy: Accuracy) -> Result<Choice, Stop> {
