@@ -8,9 +8,10 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::file::column::Column;
 use crate::file::control::{Motor, Wheel};
+use crate::file::document;
 use crate::file::draws::{Axis, Component, DRAW, LISTED, SceneEnsemble, Spread, parts};
 use crate::file::event::{Event, Quantity};
-use crate::file::kinds::{Content, Scene};
+use crate::file::kinds::Scene;
 use crate::file::mistake::{Mistake, SpanMessage, place_of};
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Document, set, span};
@@ -24,12 +25,11 @@ impl SceneEnsemble {
     /// A [`Mistake`] where the drawn numbers make no valid scene, such as a negative mass.
     pub fn member(&self, draw: &mut dyn FnMut(&str, Spread) -> f64) -> Result<Scene, Mistake> {
         let numbers: Vec<f64> = self.draws().map(|(name, spread)| draw(name, spread)).collect();
-        let content = self.numbered(&numbers).map_or_else(|| self.written(&numbers), Ok);
-        content.map(Scene::from)
+        self.numbered(&numbers).map_or_else(|| self.written(&numbers), Ok).map(Scene::from)
     }
 
     /// The scene of another member with these numbers in it; none where a value can only be read from a text.
-    fn numbered(&self, numbers: &[f64]) -> Option<Content> {
+    fn numbered(&self, numbers: &[f64]) -> Option<SceneFile> {
         let (mut numbers, mut scene) = (numbers.iter(), self.like.clone()?);
         for Axis { keys, components, .. } in &self.axes {
             let [table, key] = keys.as_slice() else { return None };
@@ -40,11 +40,11 @@ impl SceneEnsemble {
                 }
             }
         }
-        Some(Content::Body(scene))
+        Some(*scene)
     }
 
     /// The scene read from tables in which these numbers are written.
-    fn written(&self, numbers: &[f64]) -> Result<Content, Mistake> {
+    fn written(&self, numbers: &[f64]) -> Result<SceneFile, Mistake> {
         let located = |(span, message): SpanMessage| Mistake::at(&self.path, place_of(&self.text, &span), message);
         let mut numbers = numbers.iter().copied();
         let mut text = |part: &Component| part.text(&self.text, &mut numbers);
@@ -64,13 +64,13 @@ impl SceneEnsemble {
             set(&mut varied, keys, value).map_err(located)?;
         }
         let Some(own) = &self.like else {
-            return Content::read(&self.path, &self.text, &Spanned::new(0..self.text.len(), varied));
+            return document::scene(&self.path, &self.text, &Spanned::new(0..self.text.len(), varied));
         };
         let mut own = own.clone();
         for (name, table) in varied {
             own.set(name.get_ref(), &table).map_err(located)?;
         }
-        Ok(Content::Body(own))
+        Ok(*own)
     }
 }
 
@@ -96,10 +96,8 @@ fn of_columns(ensemble: &SceneEnsemble, scene: &Scene, at: &dyn Fn(&[&str]) -> R
         return Some((one.span.clone(), message));
     }
     // Numbers from this place on are read by what a member may draw.
-    let (events, changes, first, is_limited) = match &scene.content {
-        Content::Body(file) => (&file.event, file.changing().is_some(), file.group.energy() + 2, false),
-        Content::System(system) => (&system.event, false, system.joint_columns(), system.limited().next().is_some()),
-    };
+    let (file, events, changes) = (&scene.file, &scene.file.event, scene.file.changing().is_some());
+    let (first, is_limited) = (file.view().first(), file.event_names().len() > events.len());
     let names_energy = |event: &Event| matches!(event.quantity, Quantity::Energy(_));
     let keeps_energy = scene.columns().iter().any(|column| column.key() == "energy");
     if changes && (events.iter().any(names_energy) || keeps_energy && !events.is_empty()) {
@@ -129,13 +127,13 @@ pub(crate) fn read(
 ) -> Result<SceneEnsemble, Mistake> {
     let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut ensemble = parts((path, text), table).map_err(located)?;
-    let file = if let Content::Body(file) = &scene.content { Some(&**file) } else { None };
-    ensemble.text.extend(file.into_iter().flat_map(signals));
+    let file = &*scene.file;
+    ensemble.text.extend(signals(file));
     let wrong = |keys: &[&str], message: String| Err(located((span(document, keys), message)));
     if scene.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
     }
-    let has_a_pace = file.is_some_and(|file| file.paced().is_some());
+    let has_a_pace = file.paced().is_some();
     if has_a_pace || scene.schedule().density.is_some() {
         let keys = if has_a_pace { ["lagrangian", "pace"] } else { ["run", "density"] };
         let why = "members make the same number of steps, and those of a";
@@ -174,16 +172,16 @@ pub(crate) fn read(
     let axes = &ensemble.axes;
     let is_drawn = |name: &str| axes.iter().any(|axis| axis.keys.first().is_some_and(|key| key.get_ref() == name));
     // A drawn Lagrangian, force, constraint or orbit affects other tables, too: all of them are read anew.
-    let all = |file: &SceneFile| {
-        ["lagrangian", "hamiltonian", "force", "nonholonomic", "orbit"].iter().chain(&LISTED).any(|name| is_drawn(name))
-            || file.over_time.iter().any(|one| is_drawn(&one.table))
-            || file.run.steps_per_orbit.is_some()
-    };
-    let like = file.filter(|file| !all(file));
-    let all = like.is_none();
+    let all = ["lagrangian", "hamiltonian", "force", "nonholonomic", "orbit"]
+        .iter()
+        .chain(&LISTED)
+        .any(|name| is_drawn(name))
+        || file.over_time.iter().any(|one| is_drawn(&one.table))
+        || file.run.steps_per_orbit.is_some()
+        || file.system.is_some();
     let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
     ensemble.tables = tables.into_inner().into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
-    ensemble.like = like.map(|file| Box::new(file.clone()));
+    ensemble.like = (!all).then(|| Box::new(file.clone()));
     // Wrong units and keys are found by reading two members.
     for end in [true, false] {
         let value = |(_, spread)| match spread {
@@ -191,8 +189,8 @@ pub(crate) fn read(
             Spread::Uniform { to: value, .. } | Spread::Normal { mean: value, .. } => value,
         };
         let one = ensemble.written(&ensemble.draws().map(value).collect::<Vec<_>>())?;
-        if let (Some(like), Content::Body(one)) = (&mut ensemble.like, one) {
-            *like = one;
+        if let Some(like) = &mut ensemble.like {
+            **like = one;
         }
     }
     Ok(ensemble)

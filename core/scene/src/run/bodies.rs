@@ -141,11 +141,11 @@ impl System {
         self.bodies.iter().map(of).collect()
     }
 
-    /// The initial state of the file. With `nearest`, it is the nearest state that satisfies the constraints.
-    pub(crate) fn start(&self, stepper: &MultibodyStepper) -> Result<Box<[f64]>, SetupError> {
+    /// The initial state of the file. With `is_nearest`, it is the nearest state that satisfies the constraints.
+    pub(crate) fn start(&self, stepper: &MultibodyStepper, is_nearest: bool) -> Result<Box<[f64]>, SetupError> {
         let (bodies, velocities): (Vec<_>, Vec<_>) = self.given().into_iter().unzip();
         let started = stepper.start(&bodies, &velocities);
-        if !self.run.nearest {
+        if !is_nearest {
             return started;
         }
         if started.is_ok() {

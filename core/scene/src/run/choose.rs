@@ -8,7 +8,6 @@ use liestep::motion::{AnyStepper, Integrator as _};
 use liestep::with::{Method, Scheme};
 use liestep_late::{Course, Declaration, Question, QuestionError, for_accuracy};
 
-use crate::file::common::Parts as _;
 use crate::file::effects::{RotorTable, TorqueTable};
 use crate::file::lagrangian::Backend;
 use crate::file::quantity::Triple;
@@ -22,7 +21,8 @@ use crate::run::moving::MemberStart;
 /// The step of a scene for members of an ensemble in lanes. `None` for another method, for varying steps, and for effects
 /// along orbits.
 pub(crate) fn whole(file: &SceneFile) -> Option<Whole> {
-    let is_of_one_kind = matches!(file.run.method, Scheme::Step) && !file.has_steps_of_its_own();
+    let is_of_one_kind =
+        matches!(file.run.method, Scheme::Step) && !file.has_steps_of_its_own() && file.system.is_none();
     let J = inertia(file).ok().filter(|_| is_of_one_kind && file.changing().is_none() && !file.has_devices())?;
     let Pace::Step { step, .. } = file.run.pace else { return None };
     let Data { sum, numbers } = Data::of(file, &J).ok()?;

@@ -13,6 +13,7 @@ use crate::file::pointing::View;
 use crate::file::sample::{BodySample, Sample};
 use crate::run::make::Watch;
 use crate::run::moving::Sampler;
+use crate::run::system::of_bodies;
 
 /// The attitude of a body, body to space.
 fn attitude(motion: &AnyMotion) -> SO3 {
@@ -26,6 +27,9 @@ fn rate(now: &Moment<'_, AnyStepper>) -> Vector3<f64> {
 
 /// The sample of a scene with these numbers at this moment.
 pub(crate) fn sample(view: &View, now: &Moment<'_, AnyStepper>) -> Sample {
+    if let Some(system) = &view.system {
+        return of_bodies(system, view, now);
+    }
     let group = &view.group;
     let (time, energy, gap, momentum) = (now.time(), now.energy(), 0.0, nalgebra::zero());
     let quaternions = Arc::clone(&group.quaternions);
@@ -35,7 +39,7 @@ pub(crate) fn sample(view: &View, now: &Moment<'_, AnyStepper>) -> Sample {
         let vectors = [body.velocity, body.momentum, angular_momentum];
         let vectors = vectors.iter().flat_map(Vector3::as_slice);
         let ends = [energy, body.attitude.defect()];
-        let seen = view.numbers((&body.matrix(), &body.velocity), (time, now.numbers()));
+        let seen = view.numbers(&[body], (time, now.numbers()));
         let numbers = body.quaternion.iter().chain(vectors).chain(&ends).chain(&seen).copied().collect();
         return Sample { time, energy, momentum, angular_momentum, gap, bodies: vec![body], numbers, quaternions };
     }

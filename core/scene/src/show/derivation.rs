@@ -8,7 +8,7 @@ use liestep_late::{Declaration, LateError};
 use crate::file::body::{Distribution, Kinetic};
 use crate::file::effects::EFFECTS;
 use crate::file::joint::{Joint, Kind};
-use crate::file::kinds::{Content, Scene, of_parts};
+use crate::file::kinds::Scene;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::bodies::{Coil, Cord, HeavyBody};
@@ -96,7 +96,7 @@ impl Scene {
     /// The derivations of the scene's terms, and of several bodies the constraints of their joints.
     #[must_use]
     pub fn derivation(&self) -> String {
-        of_parts!(self, parts => parts.derivation())
+        self.file.system.as_ref().map_or_else(|| self.file.derivation(), |system| system.derivation())
     }
 
     /// The derivation of the sum of all terms, in this form. In C it is followed by the scene's numbers, if its steps are equal
@@ -107,7 +107,7 @@ impl Scene {
     /// The sum can't be written in this form, see [`LateError::Step`].
     #[must_use]
     pub fn written(&self, form: Form) -> Option<Result<String, LateError>> {
-        if let Content::Body(file) = &self.content { Some(file.written(form)) } else { None }
+        self.file.system.is_none().then(|| self.file.written(form))
     }
 }
 
