@@ -182,7 +182,8 @@ impl Column {
     pub(crate) fn goes_around(&self, place: usize) -> bool {
         match self.key {
             "angle" => true,
-            "roll-pitch-yaw" => self.place("pitch") != Some(place),
+            // Roll and yaw go around, pitch between them doesn't.
+            "roll-pitch-yaw" => self.part().is_some_and(|part| (place - part.start) % 3 != 1),
             _ => false,
         }
     }

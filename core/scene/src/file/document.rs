@@ -22,10 +22,10 @@ use crate::file::over_time::{self, OverTime};
 use crate::file::pointing::{Pointing, View};
 use crate::file::scene::{Origin, Places, SceneFile};
 use crate::file::schedule::{Pace, equal_steps};
-use crate::file::several::{SEVERAL, several};
+use crate::file::several::several;
 use crate::file::system::System;
 use crate::file::tables::{Document, has, span};
-use crate::file::text::check_name;
+use crate::file::text::{check_name, number_of};
 use crate::file::words::in_files;
 
 /// The scene of a document without a sweep and an ensemble.
@@ -57,7 +57,7 @@ fn one_body(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -> Result<S
     let mut rest = document.clone();
     let over_time = over_time::take(&mut rest, path).map_err(located)?;
     let of_value = |value: &Spanned<DeValue<'_>>| over_time::of_value(value, path);
-    let (mut control, mut wheel) = control::take(&mut rest, &of_value).map_err(located)?;
+    let (control, wheel) = control::take(&mut rest, &of_value, &[]).map_err(located)?;
     let mut on = None;
     let mut own = |role| take(&mut rest, role, &mut on).map_err(located);
     let (lagrangian, hamiltonian) = (own(Role::Lagrangian)?, own(Role::Hamiltonian)?);
@@ -78,9 +78,6 @@ fn one_body(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -> Result<S
         file.start = Beginning::read(start, &file.group, file.orbit.as_ref()).map_err(located)?;
     }
     per_orbit(document, &mut file).map_err(located)?;
-    if let Pace::Step { step, .. } = file.run.pace {
-        settle(&mut control, &mut wheel, (step, file.orbit.is_some())).map_err(located)?;
-    }
     (file.control, file.wheel) = (control, wheel);
     Ok(file)
 }
@@ -98,22 +95,28 @@ const DEFAULT: [&str; 10] = [
     "wheel-speeds",
     "control",
 ];
-const DEFAULT_OF_SEVERAL: [&str; 4] = ["position", "quaternion", "energy", "gap"];
+const DEFAULT_OF_SEVERAL: [&str; 8] =
+    ["position", "quaternion", "energy", "gap", "pointing", "roll-pitch-yaw", "wheel-speeds", "control"];
 
 /// Finds what is seen of a scene: pointings, events, columns; and its conflicts.
 fn observed(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage> {
+    if let Pace::Step { step, .. } = file.run.pace {
+        let has_orbit = file.orbit.is_some();
+        settle(&mut file.control, &mut file.wheel, (step, has_orbit))?;
+    }
+    let bodies = file.system.clone();
+    let bodies: Vec<&str> = bodies.iter().flat_map(|system| system.names()).collect();
+    for pointing in &mut file.pointing {
+        pointing.number = number_of(pointing.body.as_ref(), &bodies, &span(document, &["pointing"]))?;
+    }
     let view = file.view();
     of_pointing(document, &view)?;
     let columns = view.columns();
     let events = document.get_ref().get("event").and_then(|events| events.get_ref().as_array());
-    let one_body = match &file.system {
-        Some(_) => Err(SEVERAL),
-        None if view.group.is_rotation() => Ok(()),
-        None => Err(NO_BODY),
-    };
+    let of_body = if view.group.is_rotation() { Ok(()) } else { Err(NO_BODY) };
     for (number, event) in file.event.iter_mut().enumerate() {
         let at = || events.and_then(|events| events.get(number)).map_or(0..0, Spanned::span);
-        event.placed((&columns, &view.group.quaternions), one_body, &at)?;
+        event.placed((&columns, &view.group.quaternions), (&bodies, of_body), &at)?;
     }
     at_odds(document, file).map_or(Ok(()), Err)?;
     file.over_time.iter().find_map(|one| of_signal(one, file)).map_or(Ok(()), Err)?;

@@ -1,11 +1,13 @@
 //! Angles of a body's axes: the tables `[[pointing]]`; and roll, pitch and yaw relative to the local vertical.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use serde::Deserialize;
+use toml::Spanned;
 
-use crate::file::column::Column;
+use crate::file::column::{Column, Names};
 use crate::file::control::Wheel;
 use crate::file::euler::roll_pitch_yaw;
 use crate::file::group::Group;
@@ -20,6 +22,10 @@ use crate::file::system::System;
 #[serde(deny_unknown_fields)]
 pub(crate) struct Pointing {
     pub(crate) name: String,
+    pub(crate) body: Option<Spanned<String>>,
+    /// The number of the body, which is found when all are known.
+    #[serde(skip)]
+    pub(crate) number: usize,
     /// Axis, body frame.
     axis: Direction,
     to: DirectionInTime,
@@ -47,8 +53,8 @@ pub(crate) struct View {
     pub(crate) orbit: Option<Orbit>,
     pub(crate) pointing: Arc<[Pointing]>,
     pub(crate) wheels: Arc<[Wheel]>,
-    /// The number of laws of torques on the body.
-    pub(crate) controls: usize,
+    /// The body of each law of a torque.
+    pub(crate) controls: Arc<[usize]>,
     /// The number of entries that a state has for laws and wheels, before its last.
     pub(crate) memory: usize,
 }
@@ -71,30 +77,45 @@ impl View {
     pub(crate) fn numbers(&self, bodies: &[BodySample], (time, state): (f64, &[f64])) -> Vec<f64> {
         let last = state.len().saturating_sub(1);
         let memory = state.get(last.saturating_sub(self.memory)..last).unwrap_or_default();
-        let speed = |(wheel, momentum): (&Wheel, &f64)| momentum / wheel.inertia - bodies[0].velocity.dot(&wheel.axis);
+        let speed =
+            |(wheel, momentum): (&Wheel, &f64)| momentum / wheel.inertia - bodies[wheel.body].velocity.dot(&wheel.axis);
         let speeds = self.wheels.iter().zip(memory).map(speed);
-        let torques = memory.get(2 * self.wheels.len()..).unwrap_or_default().chunks(3).take(self.controls);
-        let torque = torques.filter(|torque| torque.len() == 3).map(Vector3::from_column_slice).sum::<Vector3<f64>>();
-        let torque = torque.data.0[0].into_iter().filter(|_| self.controls > 0);
+        let torques = memory.get(2 * self.wheels.len()..).unwrap_or_default().chunks(3).zip(self.controls.iter());
+        let torque = |body: usize| {
+            let own = torques.clone().filter(|(torque, of)| torque.len() == 3 && **of == body);
+            own.map(|(torque, _)| Vector3::from_column_slice(torque)).sum::<Vector3<f64>>().data.0[0]
+        };
         let now = Time { time, orbit: self.orbit.as_ref() };
-        let angles = self.pointing.iter().map(|pointing| pointing.angle(&bodies[0].matrix(), now));
-        let local = self.orbit.map(|orbit| {
-            let seen = orbit.local_vertical(time).tr_mul(&bodies[0].matrix());
-            roll_pitch_yaw(&Rotation3::from_matrix_unchecked(seen))
+        let angles = self.pointing.iter().map(|pointing| pointing.angle(&bodies[pointing.number].matrix(), now));
+        let local = self.orbit.into_iter().flat_map(|orbit| {
+            let seen = move |body: &BodySample| orbit.local_vertical(time).tr_mul(&body.matrix());
+            bodies.iter().flat_map(move |body| roll_pitch_yaw(&Rotation3::from_matrix_unchecked(seen(body))))
         });
-        angles.chain(local.into_iter().flatten()).chain(speeds).chain(torque).collect()
+        angles.chain(local).chain(speeds).chain(self.controlled().into_iter().flat_map(torque)).collect()
+    }
+
+    /// The bodies with laws.
+    fn controlled(&self) -> BTreeSet<usize> {
+        self.controls.iter().copied().collect()
     }
 
     /// The columns of a scene.
     pub(crate) fn columns(&self) -> Vec<Column> {
-        let named = |names: &mut dyn Iterator<Item = String>, unit| names.map(|name| (name, unit)).collect::<Vec<_>>();
-        let local = Self::LOCAL.iter().filter(|_| self.is_local()).map(|&name| name.to_owned());
-        let torques = ["control_x", "control_y", "control_z"].iter().filter(|_| self.controls > 0);
-        let behind = [
-            ("pointing", named(&mut self.pointing.iter().map(|pointing| pointing.name.clone()), "rad")),
-            ("roll-pitch-yaw", named(&mut { local }, "rad")),
-            ("wheel-speeds", named(&mut self.wheels.iter().map(|wheel| format!("{}_speed", wheel.name)), "rad/s")),
-            ("control", named(&mut torques.map(|&name| name.to_owned()), "N m")),
+        let bodies: Vec<String> = match &self.system {
+            Some(system) => system.names().map(|name| format!("{name}_")).collect(),
+            None => vec![String::new()],
+        };
+        let three = |body: &String, names: [&str; 3]| names.map(|name| format!("{body}{name}"));
+        let of_all = bodies.iter().filter(|_| self.is_local()).flat_map(|body| three(body, Self::LOCAL));
+        let torques = self.controlled().into_iter();
+        let torques = torques.flat_map(|body| three(&bodies[body], ["control_x", "control_y", "control_z"]));
+        let speeds = self.wheels.iter().map(|wheel| format!("{}_speed", wheel.name));
+        let named = |names: Vec<String>, unit| names.into_iter().map(|name| (name, unit)).collect();
+        let behind: [(_, Names); 4] = [
+            ("pointing", named(self.pointing.iter().map(|pointing| pointing.name.clone()).collect(), "rad")),
+            ("roll-pitch-yaw", named(of_all.collect(), "rad")),
+            ("wheel-speeds", named(speeds.collect(), "rad/s")),
+            ("control", named(torques.collect(), "N m")),
         ];
         match &self.system {
             Some(system) => Column::of_system(&system.names().collect::<Vec<_>>(), &system.kinds(), behind),

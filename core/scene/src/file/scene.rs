@@ -181,7 +181,9 @@ impl SceneFile {
     /// The parameters that follow the orbit: their tables and keys.
     pub(crate) fn turning(&self) -> impl Iterator<Item = [&str; 2]> {
         let own = self.over_time.iter().filter(|one| one.is_on_orbit()).map(|one| [&*one.table, &*one.key]);
-        self.effects().filter_map(|(effect, table)| Some([effect.key, table.on_orbit()?])).chain(own)
+        let bodies = self.system.iter().flat_map(|system| &system.bodies).flat_map(|body| &body.effects);
+        let of_bodies = bodies.filter_map(|(effect, table)| Some([effect.key, table.on_orbit()?]));
+        self.effects().filter_map(|(effect, table)| Some([effect.key, table.on_orbit()?])).chain(of_bodies).chain(own)
     }
 
     /// Whether laws or wheels turn the body.
@@ -197,7 +199,7 @@ impl SceneFile {
             orbit: self.orbit,
             pointing: self.pointing.clone().into(),
             wheels: self.wheel.clone().into(),
-            controls: self.control.len(),
+            controls: self.control.iter().map(|control| control.body).collect(),
             memory: entries(&self.control, &self.wheel),
         }
     }

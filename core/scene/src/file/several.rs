@@ -7,21 +7,26 @@ use std::sync::Arc;
 
 use serde::Deserialize;
 use toml::Spanned;
-use toml::de::Deserializer;
+use toml::de::{DeValue, Deserializer};
 
 use crate::file::column::Output;
+use crate::file::control::{self, Control, Wheel};
+use crate::file::effects::GravityGradientTable;
 use crate::file::event::Event;
 use crate::file::joint::{Joint, JointTable, Names};
-use crate::file::mistake::{Lines, Mistake, SpanMessage, advised};
+use crate::file::kepler::Orbit;
+use crate::file::mistake::{Lines, Mistake, SpanMessage};
+use crate::file::over_time;
 use crate::file::part::{Between, BodyTable, SPACE, SystemBody};
 use crate::file::picture::Picture;
 use crate::file::placed::place;
+use crate::file::pointing::Pointing;
 use crate::file::quantity::{Acceleration, Direction, Length, PositiveScalar, Scalar, Stiffness, Triple};
 use crate::file::scene::SceneFile;
 use crate::file::schedule::Schedule;
 use crate::file::system::{Spring, System, SystemPlaces};
 use crate::file::tables::Document;
-use crate::file::text::{check_name, title};
+use crate::file::text::{check_name, number_of, title};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,6 +35,14 @@ struct SystemTable {
     title: String,
     body: Vec<Spanned<BodyTable>>,
     gravity: Option<FieldTable>,
+    gravity_gradient: Option<GravityGradientTable>,
+    orbit: Option<Orbit>,
+    #[serde(default)]
+    pointing: Vec<Pointing>,
+    #[serde(default, deserialize_with = "control::taken")]
+    control: Vec<Control>,
+    #[serde(default, deserialize_with = "control::taken")]
+    wheel: Vec<Wheel>,
     #[serde(default)]
     joint: Vec<Spanned<JointTable>>,
     #[serde(default)]
@@ -59,9 +72,6 @@ struct SpringTable {
     length: Scalar<Length>,
 }
 
-pub(crate) const SEVERAL: &str =
-    "only a single body has this quantity: of several an event has a `column` with a `value`, or an `energy`";
-
 /// The scene of a document with several bodies, but for what is seen of it.
 pub(crate) fn several(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -> Result<SceneFile, Mistake> {
     let located = |(span, message): SpanMessage| Mistake::at(path, lines.place(span.start), message);
@@ -73,31 +83,41 @@ pub(crate) fn several(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -
         joints: table.joint.iter().map(|joint| place(joint.span())).collect(),
         springs: table.spring.iter().map(|spring| place(spring.span())).collect(),
     };
-    let SystemTable { title, body, gravity, joint, spring, event, run, picture, output } = table;
-    let gravity = gravity.map(|field| (field.g.value, field.up.0));
-    let system = of_tables(body, joint, spring, places).map_err(located)?;
-    let mut file = SceneFile { title, event, run, picture, output, ..SceneFile::default() };
+    let SystemTable { title, gravity_gradient, orbit, pointing, event, run, picture, output, .. } = table;
+    let (control, wheel) = (table.control, table.wheel);
+    let gravity = table.gravity.map(|field| (field.g.value, field.up.0));
+    let system = of_tables((table.body, orbit.is_some()), table.joint, table.spring, places).map_err(located)?;
+    let observed = SceneFile { title, event, run, picture, output, pointing, ..SceneFile::default() };
+    let mut file = SceneFile { gravity_gradient, orbit, control, wheel, ..observed };
     file.run.count(document).map_err(located)?;
     // Three coordinates of each place are in front.
     let bodies = system.bodies.len();
     file.group.quaternions = (0..bodies).map(|body| 3 * bodies + 4 * body).collect();
+    let names: Vec<&str> = system.names().collect();
+    let of_value = |value: &Spanned<DeValue<'_>>| over_time::of_value(value, path);
+    (file.control, file.wheel) = control::take(&mut document.clone(), &of_value, &names).map_err(located)?;
+    let of_laws = file.control.iter().map(|control| (control.body, &control.span));
+    let turned = of_laws.chain(file.wheel.iter().map(|wheel| (wheel.body, &wheel.span)));
+    if let Some((body, span)) = { turned }.find(|(body, _)| system.bodies[*body].J.is_none()) {
+        let message = format!("laws and wheels turn a body, and the point mass `{}` has no inertia", names[body]);
+        return Err(located((span.clone(), message)));
+    }
     file.system = Some(Arc::new(System { gravity, ..system }));
     Ok(file)
 }
 
 /// The bodies of their tables, with the joints and springs between them.
 fn of_tables(
-    bodies: Vec<Spanned<BodyTable>>,
+    (tables, has_orbit): (Vec<Spanned<BodyTable>>, bool),
     joints: Vec<Spanned<JointTable>>,
     springs: Vec<Spanned<SpringTable>>,
     places: SystemPlaces,
 ) -> Result<System, SpanMessage> {
-    let tables = bodies;
     let (mut bodies, mut names): (Vec<SystemBody>, Vec<Range<usize>>) = Default::default();
     let (mut is_placed, mut numbered) = (Vec::new(), BTreeMap::new());
     for body in tables {
         let span = body.span();
-        let (body, name, has_place) = body.into_inner().body(span)?;
+        let (body, name, has_place) = body.into_inner().body(span, has_orbit)?;
         if numbered.insert(body.name.clone(), bodies.len()).is_some() {
             return Err((name, format!("there are two bodies called `{}`", body.name)));
         }
@@ -170,9 +190,8 @@ fn numbers(names: &Names, (bodies, numbered): Named<'_>) -> Result<[Option<usize
         }
         *number = numbered.get(name.get_ref()).copied();
         if number.is_none() {
-            let known: Vec<_> = bodies.iter().map(|body| format!("`{}`", body.name)).collect();
-            let message = format!("unknown body `{}`, expected one of {}, `{SPACE}`", name.get_ref(), known.join(", "));
-            return Err((name.span(), advised(&message)));
+            let known: Vec<_> = bodies.iter().map(|body| body.name.as_str()).chain([SPACE]).collect();
+            number_of(Some(name), &known, &name.span())?;
         }
     }
     if numbers[0] == numbers[1] {

@@ -32,7 +32,7 @@ impl SceneFile {
     /// The stepper by the method of the schedule and a step, s, at the start.
     pub(crate) fn begun(&self, step: f64) -> Result<Begun, Stop> {
         if let Some(system) = &self.system {
-            return system.begun(&self.run, step);
+            return system.begun(self, step);
         }
         let of_kicks = self.check_kicks()?;
         let stepper = choose::by_steps(self, step)?;
@@ -43,7 +43,7 @@ impl SceneFile {
     /// The cheapest choice of method and step for an accuracy.
     pub(crate) fn searched(&self, accuracy: Accuracy) -> Result<Choice, Stop> {
         if let Some(system) = &self.system {
-            return system.searched(self.run.nearest, accuracy);
+            return system.searched(self, accuracy);
         }
         self.check_kicks()?;
         choose::searched(self, accuracy)

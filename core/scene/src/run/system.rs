@@ -16,8 +16,11 @@ use crate::file::part::{Between, SystemBody};
 use crate::file::pointing::View;
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
-use crate::file::schedule::Schedule;
+use crate::file::scene::SceneFile;
 use crate::file::system::System;
+use crate::run::bodies::Driven;
+use crate::run::choose::shares;
+use crate::run::devices::Devices;
 use crate::run::make::{Note, Place, Run, Stop, Watch, fast_turn, told};
 use crate::run::motors::{ENTRIES, pose};
 use crate::run::moving::Begun;
@@ -114,31 +117,44 @@ fn left_out_of(one: &Redundancy) -> String {
 }
 
 impl System {
-    /// The stepper by the method of a schedule and a step, s, at the start.
-    pub(crate) fn begun(&self, run: &Schedule, step: f64) -> Result<Begun, Stop> {
-        let (stepper, left_out) = self.multibody(run.method, step).map_err(Stop::Setup)?;
-        let state = self.start(&stepper, run.nearest).map_err(Stop::Start)?;
+    /// The stepper of a file by its method and a step, s, at the start.
+    pub(crate) fn begun(self: &Arc<Self>, file: &SceneFile, step: f64) -> Result<Begun, Stop> {
+        let is_driven = file.has_devices() || file.changing().is_some();
+        let method = if is_driven { Scheme::Step } else { file.run.method };
+        let (stepper, left_out) = self.multibody(file, method, step).map_err(Stop::Setup)?;
+        let state = self.start(&stepper, file.run.nearest).map_err(Stop::Start)?;
         let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
-        let of_springs = self.check_springs(&places, run.given_step().map(|_| step))?;
-        let any = AnyStepper::new(stepper);
-        let state = any.state_of(&state).ok_or_else(|| Stop::Other("a state of another system".to_owned()))?;
+        let of_springs = self.check_springs(&places, file.run.given_step().map(|_| step))?;
+        let start = if is_driven {
+            let (layout, mut velocity) = (stepper.layout(), vec![0.0; stepper.layout().components()]);
+            Propagator::velocity(&stepper, &state, &mut velocity);
+            let bodies = Driven::new(file, self, step).map_err(Stop::Setup)?;
+            let driven = Devices::new(file.clone(), (bodies, self.bodies.len()), (step, shares(file)));
+            let any = AnyStepper::new(driven.map_err(Stop::Setup)?);
+            let state = any.start(&state[layout.attitude()], &velocity).map_err(Stop::Start)?;
+            (any, state)
+        } else {
+            let any = AnyStepper::new(stepper);
+            let state = any.state_of(&state).ok_or_else(|| Stop::Other("a state of another system".to_owned()))?;
+            (any, state)
+        };
         let of_springs = of_springs.map(|(spring, why)| (self.places.springs[spring], why));
         let left_out = left_out.into_iter().filter_map(|one| Some((self.of_joint(one.joint)?, left_out_of(&one))));
-        let fast = self.fast_turns(run.step().unwrap_or_default());
-        Ok(Begun { start: (any, state), notes: left_out.chain(of_springs).chain(fast).collect() })
+        let fast = self.fast_turns(file.run.step().unwrap_or_default());
+        Ok(Begun { start, notes: left_out.chain(of_springs).chain(fast).collect() })
     }
 
     /// The cheapest choice of method and step for an accuracy.
-    pub(crate) fn searched(&self, is_nearest: bool, accuracy: Accuracy) -> Result<Choice, Stop> {
+    pub(crate) fn searched(&self, file: &SceneFile, accuracy: Accuracy) -> Result<Choice, Stop> {
         // Attitudes and velocities at the start don't depend on the step.
-        let (stepper, _) = self.multibody(Scheme::Step, accuracy.horizon / 1024.0).map_err(Stop::Setup)?;
-        let state = self.start(&stepper, is_nearest).map_err(Stop::Start)?;
+        let (stepper, _) = self.multibody(file, Scheme::Step, accuracy.horizon / 1024.0).map_err(Stop::Setup)?;
+        let state = self.start(&stepper, file.run.nearest).map_err(Stop::Start)?;
         let (layout, attitude) = (stepper.layout(), &state[stepper.layout().attitude()]);
         let mut velocity = vec![0.0; layout.components()];
         Propagator::velocity(&stepper, &state, &mut velocity);
         let candidate = |scheme| {
-            let system = self.clone();
-            let make = move |h| Ok(AnyStepper::new(system.multibody(scheme, h)?.0));
+            let (system, file) = (self.clone(), file.clone());
+            let make = move |h| Ok(AnyStepper::new(system.multibody(&file, scheme, h)?.0));
             Candidate { scheme, make: Box::new(make) }
         };
         // A point mass has no step back, either.
