@@ -200,7 +200,7 @@ fn mistakes_of_limits_shapes_and_events() {
         ),
         (
             change("[run]", "[[event]]\nname = \"a\"\ntilt = 0\n[run]"),
-            "38:1: only a single body has this quantity: of several an event has a `column` with a `value`, or an `energy`",
+            "38:1: missing field `body`: the name of one of `left`, `right`, `seat`",
         ),
     ];
     for (found, expected) in &cases {

@@ -5,6 +5,7 @@ mod certificates;
 mod computed;
 mod conventions;
 mod devices;
+mod driven;
 mod ensembles;
 mod firmware;
 mod groups;

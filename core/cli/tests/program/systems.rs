@@ -474,7 +474,7 @@ fn effects_turn_one_of_several_bodies() {
         ),
         (
             text("moments = [1, 1, 1]\nmagnetic_damping = { k = 1, field = { equator = [0, 0, 1] } }", "step = 0.1"),
-            "`field` of `magnetic_damping` follows the orbit of one body",
+            "`field` of `magnetic_damping` follows the orbit, and the file has no table `[orbit]`",
         ),
     ];
     for (text, expected) in refused {

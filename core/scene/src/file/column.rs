@@ -18,10 +18,12 @@ use Numbers::{Change, OfBody, Part, SinceStart};
 #[derive(Clone, Debug)]
 pub struct Column {
     key: &'static str,
-    /// The name of each number, and its unit.
-    names: Vec<(String, &'static str)>,
+    names: Names,
     numbers: Numbers,
 }
+
+/// The name of each number of a column, and its unit.
+pub(crate) type Names = Vec<(String, &'static str)>;
 
 /// The function that computes the numbers of a column.
 #[derive(Clone, Debug)]
@@ -44,8 +46,8 @@ impl Column {
     pub(crate) const SPATIAL_MOMENTUM: [&'static str; 3] =
         ["spatial_momentum_x", "spatial_momentum_y", "spatial_momentum_z"];
 
-    /// The columns of a scene on a group.
-    pub(crate) fn of_group(group: &Group) -> Vec<Self> {
+    /// The columns of a scene on a group, with further ones behind the numbers of its motion.
+    pub(crate) fn of_group<const N: usize>(group: &Group, behind: [(&'static str, Names); N]) -> Vec<Self> {
         let named = |quantity: &str, unit: Option<usize>| {
             let components = group.factors.iter().flat_map(|factor| &factor.components);
             let column = |(name, units): &(String, [&'static str; 2])| {
@@ -85,29 +87,26 @@ impl Column {
             of("momentum-error", one("momentum_error", unit_of_momentum), Change(in_space)),
             of("defect", one("defect", "1"), Part(energy.end..energy.end + 1)),
         ]);
+        let mut end = energy.end + 1;
+        let behind = behind.into_iter().filter(|(_, names)| !names.is_empty());
+        all.extend(behind.map(|(key, names)| Self::next(&mut end, key, names)));
         all
     }
 
-    /// The column of numbers in these places of a sample; none without any.
-    pub(crate) fn of_places<'a>(
-        key: &'static str,
-        names: impl Iterator<Item = &'a str>,
-        unit: &'static str,
-        places: Range<usize>,
-    ) -> Option<Self> {
-        let names = names.map(|name| (name.to_owned(), unit)).collect();
-        (!places.is_empty()).then_some(Self { key, names, numbers: Part(places) })
+    /// The column of the next numbers of a sample, behind those before this end.
+    fn next(end: &mut usize, key: &'static str, names: Names) -> Self {
+        let start = *end;
+        *end += names.len();
+        Self { key, numbers: Part(start..*end), names }
     }
 
     /// The columns of several bodies with joints of these names and kinds: the numbers of a sample, one after the other. The
     /// gap has another unit where it combines a length with the cosines of axes.
-    pub(crate) fn of_system(bodies: &[&str], joints: &[(&str, Kind)]) -> Vec<Self> {
-        let mut end = 0;
-        let mut next = |key: &'static str, names: Vec<(String, &'static str)>| {
-            let start = end;
-            end += names.len();
-            Self { key, numbers: Part(start..end), names }
-        };
+    pub(crate) fn of_system<const N: usize>(
+        bodies: &[&str],
+        joints: &[(&str, Kind)],
+        behind: [(&'static str, Names); N],
+    ) -> Vec<Self> {
         let named = |all: &mut dyn Iterator<Item = &&str>, names: &[&str], unit| -> Vec<_> {
             all.flat_map(|one| names.iter().map(move |name| (format!("{one}_{name}"), unit))).collect()
         };
@@ -118,30 +117,34 @@ impl Column {
         let of_all = |names: &[&str], unit| names.iter().map(|name| ((*name).to_owned(), unit)).collect::<Vec<_>>();
         let unit_of_gap = if joints.iter().any(|(_, kind)| kind.has_cosines()) { "m, 1" } else { "m" };
         let every = |_: Kind| true;
-        let all = vec![
-            next("position", of_bodies(&["x", "y", "z"], "m")),
-            next("quaternion", of_bodies(&Self::QUATERNION, "1")),
-            next("velocity", of_bodies(&Self::VELOCITY, "rad/s")),
-            next("moving", of_bodies(&["moving_x", "moving_y", "moving_z"], "m/s")),
-            next("energy", of_all(&["energy"], "J")),
-            next("momentum", of_all(&MOMENTUM, "kg m/s")),
-            next(
+        let all = [
+            ("position", of_bodies(&["x", "y", "z"], "m")),
+            ("quaternion", of_bodies(&Self::QUATERNION, "1")),
+            ("velocity", of_bodies(&Self::VELOCITY, "rad/s")),
+            ("moving", of_bodies(&["moving_x", "moving_y", "moving_z"], "m/s")),
+            ("energy", of_all(&["energy"], "J")),
+            ("momentum", of_all(&MOMENTUM, "kg m/s")),
+            (
                 "angular-momentum",
                 of_all(&["angular_momentum_x", "angular_momentum_y", "angular_momentum_z"], "kg m²/s"),
             ),
-            next("gap", of_all(&["gap"], unit_of_gap)),
-            next("angle", of_joints(Kind::turns_about_axis, &["angle"], "rad")),
-            next("shift", of_joints(Kind::shifts_along_axis, &["shift"], "m")),
-            next("force", of_joints(every, &["force_x", "force_y", "force_z"], "N")),
-            next("torque", of_joints(every, &["torque_x", "torque_y", "torque_z"], "N m")),
+            ("gap", of_all(&["gap"], unit_of_gap)),
+            ("angle", of_joints(Kind::turns_about_axis, &["angle"], "rad")),
+            ("shift", of_joints(Kind::shifts_along_axis, &["shift"], "m")),
         ];
+        let of_forces = [
+            ("force", of_joints(every, &["force_x", "force_y", "force_z"], "N")),
+            ("torque", of_joints(every, &["torque_x", "torque_y", "torque_z"], "N m")),
+        ];
+        let behind = behind.into_iter().filter(|(_, names)| !names.is_empty());
+        let mut end = 0;
+        let column = |(key, names): (&'static str, Names)| Self::next(&mut end, key, names);
+        let mut all: Vec<_> = all.into_iter().chain(behind).chain(of_forces).map(column).collect();
         let energy = all.iter().find(|column| column.key == "energy").and_then(Self::part);
-        let error = energy.map(|energy| Self {
-            key: "energy-error",
-            names: of_all(&["energy_error"], "J"),
-            numbers: Change(energy),
-        });
-        all.into_iter().chain(error).collect()
+        let error =
+            |energy| Self { key: "energy-error", names: of_all(&["energy_error"], "J"), numbers: Change(energy) };
+        all.extend(energy.map(error));
+        all
     }
 
     fn new(key: &'static str, names: &[&str], unit: &'static str, numbers: Numbers) -> Self {
@@ -184,7 +187,8 @@ impl Column {
     pub(crate) fn goes_around(&self, place: usize) -> bool {
         match self.key {
             "angle" => true,
-            "roll-pitch-yaw" => self.place("pitch") != Some(place),
+            // Roll and yaw go around, pitch between them doesn't.
+            "roll-pitch-yaw" => self.part().is_some_and(|part| (place - part.start) % 3 != 1),
             _ => false,
         }
     }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use liestep::mechanics;
 use liestep_late::Signal;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use serde::{Deserialize, Deserializer};
@@ -15,7 +16,7 @@ use crate::file::parameter::{Parameter, in_value};
 use crate::file::quantity::{Direction, Duration, Inertia, PositiveScalar, Rate, Scalar, Torque};
 use crate::file::start::Attitude;
 use crate::file::tables::Document;
-use crate::file::text::check_name;
+use crate::file::text::{check_name, number_of};
 
 /// A law with what it reads, sampled and held, or at both ends of each step.
 #[derive(Clone)]
@@ -44,6 +45,8 @@ enum Reading {
 /// A torque on the body by a law.
 #[derive(Clone)]
 pub(crate) struct Control {
+    /// The number of the body.
+    pub(crate) body: usize,
     pub(crate) controller: Controller,
     /// The largest torque of each axis, N m.
     largest: Vector3<f64>,
@@ -56,6 +59,8 @@ pub(crate) struct Control {
 #[derive(Clone)]
 pub(crate) struct Wheel {
     pub(crate) name: String,
+    /// The number of the body.
+    pub(crate) body: usize,
     /// Axis, body frame.
     pub(crate) axis: Vector3<f64>,
     /// Moment about the axis, kg m².
@@ -261,12 +266,13 @@ enum Limits {
 }
 
 impl Control {
-    fn read(table: &DeTable<'_>, span: Range<usize>) -> Result<Self, SpanMessage> {
+    fn read(table: &DeTable<'_>, span: Range<usize>, bodies: &[&str]) -> Result<Self, SpanMessage> {
         let torque = table.get("torque").ok_or_else(|| (span.clone(), "missing field `torque`".to_owned()))?;
         let Some(text) = torque.get_ref().as_str() else {
             return Err((torque.span(), "the torque of a control is a text, as \"-kd * Omega\"".to_owned()));
         };
-        let keys = ["largest", "largest_norm"];
+        let keys = ["body", "largest", "largest_norm"];
+        let body = number_of(optional(table, "body")?.as_ref(), bodies, &span)?;
         let controller = Controller::read(table, (text, torque.span()), &keys, Kind::Vector)?;
         let largest = match optional::<Limits>(table, "largest")? {
             None => Vector3::repeat(f64::INFINITY),
@@ -274,7 +280,8 @@ impl Control {
             Some(Limits::Each([x, y, z])) => Vector3::new(x.value, y.value, z.value),
         };
         let largest_norm = optional::<PositiveScalar<Torque>>(table, "largest_norm")?;
-        Ok(Self { controller, largest, largest_norm: largest_norm.map_or(f64::INFINITY, |norm| norm.value), span })
+        let largest_norm = largest_norm.map_or(f64::INFINITY, |norm| norm.value);
+        Ok(Self { body, controller, largest, largest_norm, span })
     }
 
     /// A torque within the limits of the axes, and then of the norm.
@@ -285,14 +292,14 @@ impl Control {
     }
 }
 
-const WHEEL: [&str; 7] = ["name", "axis", "inertia", "speed", "torque", "largest_torque", "largest_speed"];
+const WHEEL: [&str; 8] = ["name", "body", "axis", "inertia", "speed", "torque", "largest_torque", "largest_speed"];
 
 impl Wheel {
     fn read(
         number: usize,
         table: &DeTable<'_>,
         span: Range<usize>,
-        signal: Option<Signal>,
+        (signal, bodies): (Option<Signal>, &[&str]),
     ) -> Result<Self, SpanMessage> {
         let motor = match (signal, table.get("torque")) {
             (Some(signal), _) => Motor::Signal(signal),
@@ -322,6 +329,7 @@ impl Wheel {
         let most = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
         Ok(Self {
             name: name.unwrap_or_else(|| format!("wheel_{}", number + 1)),
+            body: number_of(optional(table, "body")?.as_ref(), bodies, &span)?,
             axis: required::<Direction>(table, "axis", &span)?.0,
             inertia: required::<PositiveScalar<Inertia>>(table, "inertia", &span)?.value,
             speed: optional::<Scalar<Rate>>(table, "speed")?.map_or(0.0, |speed| speed.value),
@@ -341,18 +349,19 @@ impl Wheel {
 /// Reader of the signal in a value; none of another value.
 type ReadSignal<'r> = &'r dyn Fn(&Spanned<DeValue<'_>>) -> Result<Option<Signal>, SpanMessage>;
 
-/// The tables `[[control]]` and `[[wheel]]`, which are removed; `signal` reads a torque over time.
+/// The tables `[[control]]` and `[[wheel]]` on bodies of these names, which are removed; `signal` reads a torque over time.
 pub(crate) fn take(
     document: &mut Document<'_>,
     signal: ReadSignal<'_>,
+    bodies: &[&str],
 ) -> Result<(Vec<Control>, Vec<Wheel>), SpanMessage> {
     let (mut controls, mut wheels) = (Vec::new(), Vec::new());
     for (_, table, span) in listed(document, "control")? {
-        controls.push(Control::read(&table, span)?);
+        controls.push(Control::read(&table, span, bodies)?);
     }
     for (number, table, span) in listed(document, "wheel")? {
         let over_time = table.get("torque").map(signal).transpose()?.flatten();
-        wheels.push(Wheel::read(number, &table, span, over_time)?);
+        wheels.push(Wheel::read(number, &table, span, (over_time, bodies))?);
     }
     Ok((controls, wheels))
 }
@@ -384,17 +393,20 @@ pub(crate) fn of_no_frame<'a>(controls: &'a [Control], wheels: &'a [Wheel]) -> O
     laws(controls, wheels).find(|(law, _)| law.has_no_frame).map(|(_, span)| span)
 }
 
-/// The readings of all laws of a scene.
-pub(crate) fn readings(controls: &[Control], wheels: &[Wheel], seen: &Seen<'_>) -> Vec<Vector3<f64>> {
-    laws(controls, wheels).flat_map(|(law, _)| law.readings(seen)).collect()
+/// The readings of all laws of a scene, by what each body sees.
+pub(crate) fn readings<'s>(
+    controls: &[Control],
+    wheels: &[Wheel],
+    seen: &dyn Fn(usize) -> Seen<'s>,
+) -> Vec<Vector3<f64>> {
+    let of_controls = controls.iter().map(|control| (control.body, &control.controller));
+    let motors = wheels.iter().filter_map(|wheel| Some((wheel.body, wheel.controller()?)));
+    of_controls.chain(motors).flat_map(|(body, law)| law.readings(&seen(body))).collect()
 }
 
 /// The number of entries that a state has for laws and wheels: a momentum and a torque of each wheel, the torques on the
 /// body, all readings, and a time.
 pub(crate) fn entries(controls: &[Control], wheels: &[Wheel]) -> usize {
-    if controls.is_empty() && wheels.is_empty() {
-        return 0;
-    }
     let readings: usize = laws(controls, wheels).map(|(law, _)| law.count_of_readings()).sum();
     2 * wheels.len() + 3 * controls.len() + 3 * readings + 1
 }
@@ -434,9 +446,14 @@ pub(crate) fn fit(controls: &[Control], wheels: &[Wheel], step: f64) -> bool {
     laws(controls, wheels).all(|(law, _)| stride(law, step).is_some())
 }
 
-/// The moments of wheels about their axes, kg m².
-pub(crate) fn of_wheels(wheels: &[Wheel]) -> Matrix3<f64> {
-    wheels.iter().map(|wheel| wheel.axis * wheel.axis.transpose() * wheel.inertia).sum()
+/// The inertia of a body with its wheels locked to it, kg m², at which a gravity gradient pulls.
+pub(crate) fn locked(J: &mechanics::Inertia, wheels: &[Wheel], body: usize) -> mechanics::Inertia {
+    let mut own = wheels.iter().filter(|wheel| wheel.body == body).peekable();
+    if own.peek().is_none() {
+        return *J;
+    }
+    let moments: Matrix3<f64> = own.map(|wheel| wheel.axis * wheel.axis.transpose() * wheel.inertia).sum();
+    mechanics::Inertia::new(J.as_matrix() + moments).unwrap_or(*J)
 }
 
 /// Steps from one sample to the next.

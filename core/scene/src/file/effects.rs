@@ -20,8 +20,8 @@ pub(crate) trait Table {
     /// The effect's parameters for a body of this inertia, at a time.
     fn numbers(&self, J: &Inertia, time: Time<'_>) -> Vec<f64>;
 
-    /// Adds the effect to one of several bodies, which has this inertia.
-    fn act_on(&self, J: &Inertia, system: &mut Multibody, body: usize);
+    /// Adds the effect to one of several bodies, which has this inertia, at a time.
+    fn act_on(&self, J: &Inertia, system: &mut Multibody, body: (usize, Time<'_>));
 
     /// The parameter that varies along the orbit.
     fn on_orbit(&self) -> Option<&'static str>;
@@ -113,7 +113,7 @@ macro_rules! tables {
             }
 
             impl $table {
-                fn effect(&self, $J: &Inertia, $t: Time<'_>) -> $effect {
+                pub(crate) fn effect(&self, $J: &Inertia, $t: Time<'_>) -> $effect {
                     let $parameters = self;
                     $value
                 }
@@ -124,8 +124,8 @@ macro_rules! tables {
                     numbers(&self.effect(J, time))
                 }
 
-                fn act_on(&self, J: &Inertia, system: &mut Multibody, body: usize) {
-                    system.on(body, self.effect(J, Time { time: 0.0, orbit: None }));
+                fn act_on(&self, J: &Inertia, system: &mut Multibody, (body, time): (usize, Time<'_>)) {
+                    system.on(body, self.effect(J, time));
                 }
 
                 fn on_orbit(&self) -> Option<&'static str> {

@@ -8,9 +8,10 @@ use toml::de::{DeArray, DeTable, DeValue};
 
 use crate::file::column::Column;
 use crate::file::control::{Motor, Wheel};
+use crate::file::document;
 use crate::file::draws::{Axis, Component, DRAW, LISTED, SceneEnsemble, Spread, parts};
 use crate::file::event::{Event, Quantity};
-use crate::file::kinds::{Content, Scene};
+use crate::file::kinds::Scene;
 use crate::file::mistake::{Mistake, SpanMessage, place_of};
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Document, set, span};
@@ -24,12 +25,11 @@ impl SceneEnsemble {
     /// A [`Mistake`] where the drawn numbers make no valid scene, such as a negative mass.
     pub fn member(&self, draw: &mut dyn FnMut(&str, Spread) -> f64) -> Result<Scene, Mistake> {
         let numbers: Vec<f64> = self.draws().map(|(name, spread)| draw(name, spread)).collect();
-        let content = self.numbered(&numbers).map_or_else(|| self.written(&numbers), Ok);
-        content.map(Scene::from)
+        self.numbered(&numbers).map_or_else(|| self.written(&numbers), Ok).map(Scene::from)
     }
 
     /// The scene of another member with these numbers in it; none where a value can only be read from a text.
-    fn numbered(&self, numbers: &[f64]) -> Option<Content> {
+    fn numbered(&self, numbers: &[f64]) -> Option<SceneFile> {
         let (mut numbers, mut scene) = (numbers.iter(), self.like.clone()?);
         for Axis { keys, components, .. } in &self.axes {
             let [table, key] = keys.as_slice() else { return None };
@@ -40,11 +40,11 @@ impl SceneEnsemble {
                 }
             }
         }
-        Some(Content::Body(scene))
+        Some(*scene)
     }
 
     /// The scene read from tables in which these numbers are written.
-    fn written(&self, numbers: &[f64]) -> Result<Content, Mistake> {
+    fn written(&self, numbers: &[f64]) -> Result<SceneFile, Mistake> {
         let located = |(span, message): SpanMessage| Mistake::at(&self.path, place_of(&self.text, &span), message);
         let mut numbers = numbers.iter().copied();
         let mut text = |part: &Component| part.text(&self.text, &mut numbers);
@@ -64,27 +64,25 @@ impl SceneEnsemble {
             set(&mut varied, keys, value).map_err(located)?;
         }
         let Some(own) = &self.like else {
-            return Content::read(&self.path, &self.text, &Spanned::new(0..self.text.len(), varied));
+            return document::scene(&self.path, &self.text, &Spanned::new(0..self.text.len(), varied));
         };
         let mut own = own.clone();
         for (name, table) in varied {
             own.set(name.get_ref(), &table).map_err(located)?;
         }
-        Ok(Content::Body(own))
+        Ok(*own)
     }
 }
 
 /// The text that identifies an ensemble: the values of its file, without those by which no member changes, and those of
 /// signals, which may be in tables beside the file. Comments and the order of keys are left out, too.
-fn identity(text: &str, file: Option<&SceneFile>) -> String {
+fn identity(text: &str, file: &SceneFile) -> String {
     let mut values = text.parse::<toml::Table>().unwrap_or_default();
     values.remove("title");
     values.get_mut("ensemble").and_then(toml::Value::as_table_mut).and_then(|own| own.remove("members"));
     let of_wheel = |wheel: &Wheel| if let Motor::Signal(signal) = &wheel.motor { Some(signal.clone()) } else { None };
-    let signals = file.into_iter().flat_map(|file| {
-        let over_time = file.over_time.iter().filter_map(|one| one.signal().cloned());
-        over_time.chain(file.wheel.iter().filter_map(of_wheel))
-    });
+    let over_time = file.over_time.iter().filter_map(|one| one.signal().cloned());
+    let signals = over_time.chain(file.wheel.iter().filter_map(of_wheel));
     let signals: String = signals.map(|signal| format!("\n# {signal:?}")).collect();
     format!("{values}{signals}")
 }
@@ -102,16 +100,9 @@ struct Parts<'a> {
 
 impl<'a> Parts<'a> {
     fn of(scene: &'a Scene) -> Self {
-        match &scene.content {
-            Content::Body(file) => {
-                let (changes, first) = (file.changing().is_some(), file.group.energy() + 2);
-                Self { events: &file.event, changes, first, is_limited: false }
-            }
-            Content::System(system) => {
-                let (first, is_limited) = (system.joint_columns(), system.limited().next().is_some());
-                Self { events: &system.event, changes: false, first, is_limited }
-            }
-        }
+        let file = &scene.file;
+        let (events, changes) = (&file.event, file.changing().is_some());
+        Self { events, changes, first: file.view().first(), is_limited: file.event_names().len() > events.len() }
     }
 }
 
@@ -174,7 +165,7 @@ pub(crate) fn read(
 ) -> Result<SceneEnsemble, Mistake> {
     let located = |(span, message): SpanMessage| Mistake::at(path, place_of(text, &span), message);
     let mut ensemble = parts((path, text), table).map_err(located)?;
-    let file = if let Content::Body(file) = &scene.content { Some(&**file) } else { None };
+    let file = &*scene.file;
     ensemble.identity = identity(text, file);
     let output = document.get_ref().get("output").and_then(|output| output.get_ref().as_table());
     let lists = output.is_some_and(|output| output.contains_key("columns"));
@@ -183,7 +174,7 @@ pub(crate) fn read(
     if scene.asks_for_accuracy() {
         return wrong(&["run", "accuracy"], "the members of an ensemble make the same steps: give a `step`".to_owned());
     }
-    let has_a_pace = file.is_some_and(|file| file.paced().is_some());
+    let has_a_pace = file.paced().is_some();
     if has_a_pace || scene.schedule().density.is_some() {
         let keys = if has_a_pace { ["lagrangian", "pace"] } else { ["run", "density"] };
         let why = "members make the same number of steps, and those of a";
@@ -226,16 +217,16 @@ pub(crate) fn read(
     let axes = &ensemble.axes;
     let is_drawn = |name: &str| axes.iter().any(|axis| axis.keys.first().is_some_and(|key| key.get_ref() == name));
     // A drawn Lagrangian, force, constraint or orbit affects other tables, too: all of them are read anew.
-    let all = |file: &SceneFile| {
-        ["lagrangian", "hamiltonian", "force", "nonholonomic", "orbit"].iter().chain(&LISTED).any(|name| is_drawn(name))
-            || file.over_time.iter().any(|one| is_drawn(&one.table))
-            || file.run.steps_per_orbit.is_some()
-    };
-    let like = file.filter(|file| !all(file));
-    let all = like.is_none();
+    let all = ["lagrangian", "hamiltonian", "force", "nonholonomic", "orbit"]
+        .iter()
+        .chain(&LISTED)
+        .any(|name| is_drawn(name))
+        || file.over_time.iter().any(|one| is_drawn(&one.table))
+        || file.run.steps_per_orbit.is_some()
+        || file.system.is_some();
     let is_read = |name: &str| is_drawn(name) || all && !["sweep", "ensemble"].contains(&name);
     ensemble.tables = tables.into_inner().into_iter().filter(|(name, _)| is_read(name.get_ref())).collect();
-    ensemble.like = like.map(|file| Box::new(file.clone()));
+    ensemble.like = (!all).then(|| Box::new(file.clone()));
     // Wrong units and keys are found by reading two members.
     for end in [true, false] {
         let value = |(_, spread)| match spread {
@@ -243,8 +234,8 @@ pub(crate) fn read(
             Spread::Uniform { to: value, .. } | Spread::Normal { mean: value, .. } => value,
         };
         let one = ensemble.written(&ensemble.draws().map(value).collect::<Vec<_>>())?;
-        if let (Some(like), Content::Body(one)) = (&mut ensemble.like, one) {
-            *like = one;
+        if let Some(like) = &mut ensemble.like {
+            **like = one;
         }
     }
     Ok(ensemble)

@@ -9,13 +9,16 @@ use toml::Spanned;
 use crate::file::column::Column;
 use crate::file::mistake::{SpanMessage, advised};
 use crate::file::quantity::{Angle, Any, Energy, Number, PositiveScalar, Rate, Scalar};
-use crate::file::text::check_name;
+use crate::file::text::{check_name, number_of};
 
 /// An event to be detected along a run: a quantity passes a value.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(try_from = "EventTable")]
 pub(crate) struct Event {
     pub(crate) name: String,
+    body: Option<Spanned<String>>,
+    /// The number of the body, which is found when all are known.
+    pub(crate) number: usize,
     pub(crate) quantity: Quantity,
     /// The name of a column, whose place is found when the group is known.
     pub(crate) column: Option<Spanned<String>>,
@@ -50,6 +53,7 @@ pub(crate) enum Direction {
 #[serde(deny_unknown_fields)]
 struct EventTable {
     name: String,
+    body: Option<Spanned<String>>,
     tilt: Option<Scalar<Angle>>,
     speed: Option<PositiveScalar<Rate>>,
     energy: Option<Scalar<Energy>>,
@@ -100,24 +104,30 @@ impl TryFrom<EventTable> for Event {
             return Err("a `value` is that of a `column`, as in `column = \"x_2\", value = 0.5`".to_owned());
         }
         check_name("an event", &table.name)?;
-        Ok(Self { name: table.name, quantity, column: table.column, direction: table.direction, stops: table.stop })
+        let EventTable { name, body, column, direction, stop: stops, .. } = table;
+        Ok(Self { name, body, number: 0, quantity, column, direction, stops })
     }
 }
 
 impl Event {
-    /// Finds the place of a column among these, which have quaternions in some places, or refuses the quantity of one body
-    /// elsewhere: `one_body` says why there is none.
+    /// Finds the place of a column among these, which have quaternions in some places, or the body of these names; `of_body` says
+    /// why there is none.
     pub(crate) fn placed(
         &mut self,
         (columns, quaternions): (&[Column], &[usize]),
-        one_body: Result<(), &str>,
+        (bodies, of_body): (&[&str], Result<(), &str>),
         at: &dyn Fn() -> Range<usize>,
     ) -> Result<(), SpanMessage> {
+        let is_of_all = self.column.is_some() || matches!(self.quantity, Quantity::Energy(_));
+        if let Some(body) = self.body.as_ref().filter(|_| is_of_all) {
+            return Err((body.span(), "this quantity is that of all bodies: leave `body` out".to_owned()));
+        }
         let Some(name) = &self.column else {
-            return match one_body {
-                Err(message) if !matches!(self.quantity, Quantity::Energy(_)) => Err((at(), message.to_owned())),
-                _ => Ok(()),
-            };
+            if !is_of_all {
+                of_body.map_err(|message| (at(), message.to_owned()))?;
+                self.number = number_of(self.body.as_ref(), bodies, &at())?;
+            }
+            return Ok(());
         };
         // A quaternion has two signs, and no values that are passed.
         let is_whole = |place: usize| !quaternions.iter().any(|start| (*start..start + 4).contains(&place));

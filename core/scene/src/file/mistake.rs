@@ -163,7 +163,7 @@ pub(crate) fn advised(message: &str) -> String {
 
 /// The lines of a text, by which the places of many ranges are found.
 pub(crate) struct Lines<'a> {
-    text: &'a str,
+    pub(crate) text: &'a str,
     /// The first byte of each line.
     starts: Vec<usize>,
 }

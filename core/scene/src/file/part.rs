@@ -11,7 +11,7 @@ use toml::Spanned;
 
 use crate::file::body::{AnyInertia, INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
 use crate::file::effects::{
-    DipoleTable, DragTable, EFFECTS, EffectEntry, MagneticDampingTable, RotorTable, Table, TorqueTable,
+    AirDragTable, DipoleTable, DragTable, EFFECTS, EffectEntry, MagneticDampingTable, RotorTable, Table, TorqueTable,
 };
 use crate::file::mistake::SpanMessage;
 use crate::file::quantity::{self, Density, Length, Mass, PositiveScalar, Speed, Triple};
@@ -70,6 +70,7 @@ pub(crate) struct BodyTable {
     dipole: Option<DipoleTable>,
     rotor: Option<RotorTable>,
     drag: Option<DragTable>,
+    air_drag: Option<AirDragTable>,
     torque: Option<TorqueTable>,
     magnetic_damping: Option<MagneticDampingTable>,
 }
@@ -115,11 +116,12 @@ impl BodyTable {
     }
 
     /// The effects on the body, or why it can't have them.
-    fn effects(&self, J: Option<&Inertia>) -> Result<Vec<BodyEffect>, String> {
+    fn effects(&self, J: Option<&Inertia>, has_orbit: bool) -> Result<Vec<BodyEffect>, String> {
         let all = [
             effect("dipole", self.dipole),
             effect("rotor", self.rotor),
             effect("drag", self.drag),
+            effect("air_drag", self.air_drag),
             effect("torque", self.torque),
             effect("magnetic_damping", self.magnetic_damping),
         ];
@@ -128,10 +130,10 @@ impl BodyTable {
             return Err(format!("`{}` turns a body, and a point mass has no inertia: leave it out", entry.key));
         }
         match all.iter().find_map(|(entry, table)| Some((entry, table.on_orbit()?))) {
-            Some((entry, key)) => {
-                Err(format!("`{key}` of `{}` follows the orbit of one body: give three numbers", entry.key))
+            Some((entry, key)) if !has_orbit => {
+                Err(format!("`{key}` of `{}` follows the orbit, and the file has no table `[orbit]`", entry.key))
             }
-            None => Ok(all),
+            _ => Ok(all),
         }
     }
 
@@ -155,10 +157,14 @@ impl BodyTable {
     }
 
     /// The body of a table at this place, the place of its name, and whether it has a place in space.
-    pub(crate) fn body(self, span: Range<usize>) -> Result<(SystemBody, Range<usize>, bool), SpanMessage> {
+    pub(crate) fn body(
+        self,
+        span: Range<usize>,
+        has_orbit: bool,
+    ) -> Result<(SystemBody, Range<usize>, bool), SpanMessage> {
         let shape = self.shape().map_err(|message| (span.clone(), message.to_owned()))?;
         let mass = self.mass(shape.as_ref());
-        let effects = mass.as_ref().map_or(Ok(Vec::new()), |(_, J)| self.effects(J.as_ref()));
+        let effects = mass.as_ref().map_or(Ok(Vec::new()), |(_, J)| self.effects(J.as_ref(), has_orbit));
         let Self { name, kinetic, position, moving, start, .. } = self;
         check_name("a body", name.get_ref()).map_err(|message| (name.span(), message))?;
         if name.get_ref() == SPACE {

@@ -5,22 +5,23 @@ use serde::Deserialize;
 
 use crate::file::quantity::Direction;
 
-/// The picture of one body.
+/// The picture of a run: on the left a path on a sphere, or the ways of several bodies in a plane; on the right panels.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub(crate) struct SpherePicture {
+pub(crate) struct Picture {
     /// The path on the sphere.
     pub(crate) path: Trace,
     /// The body axis that `path = "axis"` and the panel `tilt` follow.
     pub(crate) axis: Direction,
     /// Panels from top to bottom.
-    pub(crate) panels: Vec<Curve>,
+    pub(crate) panels: Option<Vec<Curve>>,
+    /// The plane of projection; by default the plane of the widest motion.
+    pub(crate) plane: Option<Plane>,
 }
 
-impl SpherePicture {
-    /// The panels of a group other than SO(3), which has no sphere.
-    pub(crate) fn on_group() -> Self {
-        Self { panels: vec![Curve::Attitude, Curve::Rates, Curve::Energy], ..Self::default() }
+impl Default for Picture {
+    fn default() -> Self {
+        Self { path: Trace::Axis, axis: Direction(Vector3::z()), panels: None, plane: None }
     }
 }
 
@@ -36,16 +37,18 @@ pub(crate) enum Trace {
     Velocity,
 }
 
-/// The curve of a panel, over time.
+/// The curves of a panel, over time; those of several bodies one for each, but for energy and momentum.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Curve {
     /// The columns of the attitude.
     Attitude,
-    /// The angular velocity, body frame; on any group the velocity.
+    /// The angular velocity, body frame; on any group the velocity; of several bodies its norm.
     Rates,
     /// The angle between the axis and the third axis of space.
     Tilt,
+    /// The angle by which a body is turned from its start.
+    Turns,
     Energy,
     /// The deviation of the energy from its start, in powers of ten.
     EnergyError,
@@ -55,21 +58,6 @@ pub(crate) enum Curve {
     VerticalMomentumError,
     /// The length of the deviation of the spatial momentum from its start, in powers of ten.
     MomentumError,
-}
-
-impl Default for SpherePicture {
-    fn default() -> Self {
-        let panels = vec![Curve::Rates, Curve::Momentum, Curve::Energy];
-        Self { path: Trace::Axis, axis: Direction(Vector3::z()), panels }
-    }
-}
-
-/// The picture of several bodies.
-#[derive(Clone, Deserialize, Default)]
-#[serde(deny_unknown_fields, default)]
-pub(crate) struct PlanePicture {
-    /// The plane of projection; by default the plane of the widest motion.
-    pub(crate) plane: Option<Plane>,
 }
 
 /// The plane of projection of the bodies' paths.

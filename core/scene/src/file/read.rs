@@ -4,7 +4,8 @@ use std::path::Path;
 
 use toml::de::DeTable;
 
-use crate::file::kinds::{Content, Scene};
+use crate::file::document;
+use crate::file::kinds::Scene;
 use crate::file::mistake::{Lines, Mistake, SpanMessage};
 use crate::file::tables::Document;
 use crate::file::text::text;
@@ -31,7 +32,7 @@ impl Scene {
         let located = |(span, message): SpanMessage| Mistake::at(path, lines.place(span.start), message);
         let mut document = DeTable::parse(text).map_err(|error| Mistake::of_toml(path, text, &error))?;
         let [sweep, drawn] = ["sweep", "ensemble"].map(|table| document.get_mut().remove(table));
-        let read = |document: &Document<'_>| Content::read(path, text, document).map(Self::from);
+        let read = |document: &Document<'_>| document::scene(path, text, document).map(Self::from);
         let mut scene = read(&document)?;
         if let Some(table) = sweep {
             scene.sweep = Some(Box::new(sweep::read(&document, &table, &located, &read)?));

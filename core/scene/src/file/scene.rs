@@ -1,7 +1,7 @@
-//! The file of a scene with one body.
+//! The file of a scene: one body, or several of them, with all that both have.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use liestep_late::Declaration;
@@ -13,7 +13,6 @@ use toml::de::{DeValue, Error, ValueDeserializer};
 use crate::file::beginning::Beginning;
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
-use crate::file::common::Parts;
 use crate::file::control::{self, Control, Wheel, entries};
 use crate::file::effects::{self, EFFECTS, EffectEntry, Table, effects};
 use crate::file::event::Event;
@@ -24,10 +23,11 @@ use crate::file::mistake::SpanMessage;
 use crate::file::orbit::{Time, put};
 use crate::file::over_time::OverTime;
 use crate::file::parameter::in_value;
-use crate::file::picture::SpherePicture;
+use crate::file::picture::Picture;
 use crate::file::pointing::{Pointing, View};
 use crate::file::quantity::{Rate, in_si, round};
 use crate::file::schedule::{Pace, Schedule};
+use crate::file::system::System;
 use crate::file::text::title;
 
 /// Defines the type, with a field and a row of its documentation for each effect.
@@ -41,7 +41,7 @@ macro_rules! scene_file {
         /// | effect | parameters |
         /// |---|---|
         $(#[doc = concat!("| `", stringify!($name), "` |", $(" `", stringify!($key), ": ", stringify!($type), "`"),+, " |")])+
-        #[derive(Clone, Deserialize)]
+        #[derive(Clone, Default, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct SceneFile {
             $($fields)+
@@ -98,7 +98,7 @@ effects! { scene_file
     #[serde(default)]
     pub(crate) pointing: Vec<Pointing>,
     #[serde(default)]
-    pub(crate) picture: SpherePicture,
+    pub(crate) picture: Picture,
     #[serde(default)]
     pub(crate) event: Vec<Event>,
     #[serde(default)]
@@ -115,7 +115,10 @@ effects! { scene_file
     pub(crate) control: Vec<Control>,
     #[serde(default, deserialize_with = "control::taken")]
     pub(crate) wheel: Vec<Wheel>,
-    /// The group of the scene.
+    /// Several bodies in the place of one.
+    #[serde(skip)]
+    pub(crate) system: Option<Arc<System>>,
+    /// The group of the scene; of several bodies that of each.
     #[serde(skip)]
     pub(crate) group: Group,
     /// The sum of all terms where the file has the kinetic energy itself.
@@ -181,7 +184,9 @@ impl SceneFile {
     /// The parameters that follow the orbit: their tables and keys.
     pub(crate) fn turning(&self) -> impl Iterator<Item = [&str; 2]> {
         let own = self.over_time.iter().filter(|one| one.is_on_orbit()).map(|one| [&*one.table, &*one.key]);
-        self.effects().filter_map(|(effect, table)| Some([effect.key, table.on_orbit()?])).chain(own)
+        let bodies = self.system.iter().flat_map(|system| &system.bodies).flat_map(|body| &body.effects);
+        let of_bodies = bodies.filter_map(|(effect, table)| Some([effect.key, table.on_orbit()?]));
+        self.effects().filter_map(|(effect, table)| Some([effect.key, table.on_orbit()?])).chain(of_bodies).chain(own)
     }
 
     /// Whether laws or wheels turn the body.
@@ -198,10 +203,11 @@ impl SceneFile {
     pub(crate) fn view(&self) -> View {
         View {
             group: self.group.clone(),
+            system: self.system.clone(),
             orbit: self.orbit,
             pointing: self.pointing.clone().into(),
             wheels: self.wheel.clone().into(),
-            controls: self.control.len(),
+            controls: self.control.iter().map(|control| control.body).collect(),
             memory: entries(&self.control, &self.wheel),
         }
     }
@@ -257,65 +263,57 @@ impl SceneFile {
         let is_free = self.effects().next().is_none() && self.own().next().is_none() && !self.has_devices();
         if is_free { self.kinetic().order() } else { 2 }
     }
-}
 
-impl Parts for SceneFile {
-    fn title(&self) -> &str {
-        &self.title
-    }
-
-    fn schedule(&self) -> &Schedule {
-        &self.run
-    }
-
-    fn schedule_mut(&mut self) -> &mut Schedule {
-        &mut self.run
-    }
-
-    fn columns(&self) -> &[Column] {
-        &self.columns
-    }
-
-    fn output(&self) -> &Output {
-        &self.output
-    }
-
-    fn path(&self) -> &Path {
-        &self.origin.path
-    }
-
-    fn event_names(&self) -> Vec<&str> {
-        self.event.iter().map(|event| event.name.as_str()).collect()
-    }
-
-    fn sum(&self) -> String {
-        let body = self.body.iter().map(|_| "body".to_owned());
-        let own = self.lagrangian.iter().map(|_| "a Lagrangian of its own".to_owned());
-        let hamiltonian = self.hamiltonian.iter().map(|_| "a Hamiltonian of its own".to_owned());
-        let effects = self.effects().map(|(effect, _)| effect.name(" "));
-        let force = self.force.iter().map(|_| "a force of its own".to_owned());
-        let control = self.control.iter().map(|_| "a law".to_owned());
-        let wheels = (!self.wheel.is_empty()).then(|| match self.wheel.len() {
-            1 => "a wheel".to_owned(),
-            count => format!("{count} wheels"),
-        });
-        let constraint = self.nonholonomic.iter().map(|_| "a constraint of its own".to_owned());
-        let own = body.chain(own).chain(hamiltonian).chain(effects).chain(force).chain(constraint);
-        own.chain(control).chain(wheels).collect::<Vec<_>>().join(" + ")
-    }
-
-    fn about(&self) -> String {
-        let turn = self.turn_of_a_step().map(|turn| format!(", hΩ = {} rad", round(turn))).unwrap_or_default();
-        format!("{}, {}{turn}", self.sum(), self.run.about(self.has_steps_of_its_own()))
-    }
-
-    fn has_steps_of_its_own(&self) -> bool {
+    /// Whether the steps have different lengths.
+    pub(crate) fn has_steps_of_its_own(&self) -> bool {
         let is_varied = self.run.steps_per_orbit.is_some() || self.run.density.is_some();
         is_varied || self.paced().is_some()
     }
 
-    fn unwatched(mut self) -> Self {
+    /// The names of the events, those of joints with limits after those of the file.
+    pub(crate) fn event_names(&self) -> Vec<&str> {
+        let of_joints = self.system.iter().flat_map(|system| {
+            system.limited().filter_map(|(joint, _)| system.joint_names.get(joint).map(String::as_str))
+        });
+        self.event.iter().map(|event| event.name.as_str()).chain(of_joints).collect()
+    }
+
+    /// The scene without events and columns.
+    pub(crate) fn unwatched(mut self) -> Self {
         self.event.clear();
+        self.columns.clear();
+        if let Some(system) = self.system.as_mut().map(Arc::make_mut) {
+            system.joints.iter_mut().for_each(|joint| joint.of.limits = None);
+            system.has_reactions = false;
+        }
         self
+    }
+
+    /// A description of the terms, in words.
+    pub(crate) fn sum(&self) -> String {
+        let counted = |count: usize, one: &str| match count {
+            0 => None,
+            1 => Some(format!("a {one}")),
+            count => Some(format!("{count} {one}s")),
+        };
+        let own = |all: &[DeclaredTerm], kind: &str| vec![format!("a {kind} of its own"); all.len()];
+        let bodies = self.system.iter().flat_map(|system| system.terms());
+        let body = self.body.iter().map(|_| "body".to_owned());
+        let effects = self.effects().map(|(effect, _)| effect.name(" "));
+        let terms =
+            bodies.chain(body).chain(own(&self.lagrangian, "Lagrangian")).chain(own(&self.hamiltonian, "Hamiltonian"));
+        let terms = terms.chain(effects).chain(own(&self.force, "force")).chain(own(&self.nonholonomic, "constraint"));
+        let laws = vec!["a law".to_owned(); self.control.len()];
+        terms.chain(laws).chain(counted(self.wheel.len(), "wheel")).collect::<Vec<_>>().join(" + ")
+    }
+
+    /// A description of the terms and the steps, in words.
+    pub(crate) fn about(&self) -> String {
+        let turn = match &self.system {
+            Some(system) => self.run.step().map(|step| system.turns(step)),
+            None => self.turn_of_a_step().map(|turn| format!(", hΩ = {} rad", round(turn))),
+        };
+        let steps = self.run.about(self.has_steps_of_its_own());
+        format!("{}, {steps}{}", self.sum(), turn.unwrap_or_default())
     }
 }

@@ -11,7 +11,7 @@ use crate::file::quantity::{Duration, Number, PositiveScalar, Rate, short};
 use crate::file::tables::{Document, has, span};
 
 /// The duration, the steps and the method.
-#[derive(Clone, Deserialize)]
+#[derive(Clone, Default, Deserialize)]
 #[serde(from = "ScheduleTable")]
 pub(crate) struct Schedule {
     /// s.
@@ -43,6 +43,12 @@ pub(crate) enum Pace {
     Step { step: f64, steps: u32 },
     /// The error at the end.
     Accuracy(f64),
+}
+
+impl Default for Pace {
+    fn default() -> Self {
+        Self::Step { step: 0.0, steps: 0 }
+    }
 }
 
 #[derive(Deserialize)]

@@ -2,11 +2,13 @@
 
 use std::fs::File;
 use std::io::{self, Read as _};
+use std::ops::Range;
 use std::path::Path;
 
 use serde::{Deserialize as _, Deserializer};
+use toml::Spanned;
 
-use crate::file::mistake::{Mistake, visible};
+use crate::file::mistake::{Mistake, SpanMessage, advised, visible};
 
 /// Most bytes of a scene, which has a few hundred. A larger file is no scene, and may have no end.
 const MOST_BYTES: u64 = 1 << 20;
@@ -36,9 +38,7 @@ pub(crate) fn check_name(of: &str, name: &str) -> Result<(), String> {
     let like = |letter: char| if letter.is_alphanumeric() || letter == '-' { letter } else { '_' };
     let plain: String = name.chars().map(like).collect();
     let advice = if plain.is_empty() { String::new() } else { format!(": write `{plain}`") };
-    Err(format!(
-        "the `name` of {of} has letters, digits, - and _ only, as keys and columns are made with it{advice}"
-    ))
+    Err(format!("the `name` of {of} has letters, digits, - and _ only, as keys and columns are made with it{advice}"))
 }
 
 /// A title, or the name of the file where there is none.
@@ -49,6 +49,27 @@ pub(crate) fn or_name(title: String, path: &Path) -> String {
 /// A text in one line with its control characters written out.
 fn one_line(text: &str) -> String {
     visible(text).replace('\n', "\\n").replace('\t', "\\t")
+}
+
+/// The number of the body of a name in a table at this place; that of the only one, if a scene has no other, may be left out. One
+/// body without a name has none.
+pub(crate) fn number_of(
+    name: Option<&Spanned<String>>,
+    bodies: &[&str],
+    table: &Range<usize>,
+) -> Result<usize, SpanMessage> {
+    let known = || bodies.iter().map(|body| format!("`{body}`")).collect::<Vec<_>>().join(", ");
+    match name {
+        None if bodies.len() < 2 => Ok(0),
+        None => Err((table.clone(), format!("missing field `body`: the name of one of {}", known()))),
+        Some(name) if bodies.is_empty() => {
+            Err((name.span(), "the only body of a scene has no name: leave `body` out".to_owned()))
+        }
+        Some(name) => bodies.iter().position(|body| body == name.get_ref()).ok_or_else(|| {
+            let message = format!("unknown body `{}`, expected one of {}", name.get_ref(), known());
+            (name.span(), advised(&message))
+        }),
+    }
 }
 
 /// A title in one line with its control characters written out. A terminal would obey them, and SVG doesn't allow them.

@@ -1,17 +1,25 @@
 //! The system of a file: its bodies, springs and joints.
 
 use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
+use liestep::effects::{Rotor, Torque};
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
 use liestep::methods::{Multibody, MultibodyStepper, Redundancy};
+use liestep::motion::{Layout, Propagator, StepReport};
 use liestep::with::Scheme;
-use liestep::{NonstandardInertia, SO3, SetupError, lagrangian};
+use liestep::{NonstandardInertia, SO3, SetupError, StepError, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
+use std::sync::Arc;
+
 use crate::file::body::Kinetic;
+use crate::file::control::locked;
 use crate::file::joint::{Joint, Kind};
+use crate::file::orbit::Time;
 use crate::file::part::{Between, SystemBody};
+use crate::file::scene::SceneFile;
 use crate::file::system::{Spring, System};
+use crate::run::devices::{Held, Mechanism};
 use crate::run::nearest::BodyState;
 
 /// A body with its weight. One of the three kinetic terms has the factor one, the others zero.
@@ -92,25 +100,36 @@ pub(crate) struct Cord {
     at_2: Vector3<f64>,
 }
 
+/// The pull of a mass far away on a body beside the one whose orbit a frame follows: the energy
+/// `m k (|n|² |x|² − 3 (n·x)²) / 2`, with `n` towards the mass.
+#[lagrangian(
+    group(d = R3),
+    advected(x = d.seen_from(space)),
+    l_d = -0.25 * h * m * k * (n.norm_squared() * (x.norm_squared() + (x + d).norm_squared())
+        - 3.0 * (n.dot(&x).powi(2) + n.dot(&(x + d)).powi(2))),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tide {
+    /// Mass, kg.
+    m: f64,
+    /// Square of a rate, rad²/s².
+    k: f64,
+    n: Vector3<f64>,
+}
+
 impl System {
-    /// The stepper by a method and a step, s, and the functions of joints that the others imply at the start, which are left out.
-    pub(crate) fn multibody(
-        &self,
-        method: Scheme,
-        step: f64,
-    ) -> Result<(MultibodyStepper, Vec<Redundancy>), SetupError> {
+    /// The bodies with their joints and springs, and the functions of joints that the others imply at the start, which are left out.
+    fn joined(&self) -> Result<(Multibody, Vec<Redundancy>), SetupError> {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
         let mut system = Multibody::new();
         for body in &self.bodies {
             let is = |kinetic| f64::from(u8::from(body.kinetic == kinetic));
             let [rigid, geodesic, cayley] = [Kinetic::Rigid, Kinetic::Geodesic, Kinetic::Cayley].map(is);
             let m = body.m;
-            let Some(J) = body.J else {
-                system.body(HeavyPoint { m, g, up });
-                continue;
+            match body.J {
+                None => system.body(HeavyPoint { m, g, up }),
+                Some(J) => system.body(HeavyBody { J, J_d: J.to_nonstandard(), rigid, geodesic, cayley, m, g, up }),
             };
-            let number = system.body(HeavyBody { J, J_d: J.to_nonstandard(), rigid, geodesic, cayley, m, g, up });
-            body.effects.iter().for_each(|(_, effect)| effect.act_on(&J, &mut system, number));
         }
         for &Between { bodies, of: Spring { k, length, at: [at_1, at_2] } } in &self.springs {
             if length == 0.0 {
@@ -125,7 +144,48 @@ impl System {
             add_terms(&mut system, [above, Some(below)], &joint);
         }
         let places: Vec<_> = self.given().into_iter().map(|(place, _)| place).collect();
-        let (system, left_out) = system.independent(&places)?;
+        system.independent(&places)
+    }
+
+    /// Adds what acts on the bodies of a file at a time, with what is held.
+    fn act(&self, file: &SceneFile, system: &mut Multibody, now: Time<'_>, held: &[Held]) -> Result<(), SetupError> {
+        for (number, body) in self.bodies.iter().enumerate() {
+            let J = match &body.J {
+                Some(J) => locked(J, &file.wheel, number),
+                None => {
+                    Inertia::from_principal_moments(Vector3::repeat(1.0)).map_err(|_| SetupError::NonFiniteConstant)?
+                }
+            };
+            if let Some(J) = &body.J {
+                body.effects.iter().for_each(|(_, effect)| effect.act_on(J, system, (number, now)));
+            }
+            if let Some(gradient) = file.gravity_gradient {
+                let turning = gradient.effect(&J, now);
+                system.on(number, Tide { m: body.m, k: turning.GM / turning.r.powi(3), n: turning.direction });
+                if body.J.is_some() {
+                    system.on(number, turning);
+                }
+            }
+            let Held { spin, torque } = held.get(number).copied().unwrap_or_default();
+            if spin != Vector3::zeros() {
+                system.on(number, Rotor { spin });
+            }
+            if torque != Vector3::zeros() {
+                system.on(number, Torque { torque });
+            }
+        }
+        Ok(())
+    }
+
+    /// The stepper of a file by a method and a step, s, and the functions of joints that are left out.
+    pub(crate) fn multibody(
+        &self,
+        file: &SceneFile,
+        method: Scheme,
+        step: f64,
+    ) -> Result<(MultibodyStepper, Vec<Redundancy>), SetupError> {
+        let (mut system, left_out) = self.joined()?;
+        self.act(file, &mut system, file.at(0.0), &[])?;
         let stepper = system.stepper(step)?;
         let stepper = if let Scheme::Composition(scheme) = method { stepper.composed(scheme)? } else { stepper };
         Ok((stepper, left_out))
@@ -141,11 +201,11 @@ impl System {
         self.bodies.iter().map(of).collect()
     }
 
-    /// The initial state of the file. With `nearest`, it is the nearest state that satisfies the constraints.
-    pub(crate) fn start(&self, stepper: &MultibodyStepper) -> Result<Box<[f64]>, SetupError> {
+    /// The initial state of the file. With `is_nearest`, it is the nearest state that satisfies the constraints.
+    pub(crate) fn start(&self, stepper: &MultibodyStepper, is_nearest: bool) -> Result<Box<[f64]>, SetupError> {
         let (bodies, velocities): (Vec<_>, Vec<_>) = self.given().into_iter().unzip();
         let started = stepper.start(&bodies, &velocities);
-        if !self.run.nearest {
+        if !is_nearest {
             return started;
         }
         if started.is_ok() {
@@ -183,5 +243,83 @@ fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) 
     }
     if let Some([torque, rate]) = terms.friction {
         system.between(bodies, DryFriction { torque, rate });
+    }
+}
+
+/// Several bodies with laws and wheels, or along an orbit.
+pub(crate) struct Driven {
+    file: SceneFile,
+    system: Arc<System>,
+    joined: Multibody,
+    /// The stepper at the time zero.
+    first: MultibodyStepper,
+}
+
+impl Driven {
+    /// The bodies of a file, with steps of `h`, s.
+    pub(crate) fn new(file: &SceneFile, system: &Arc<System>, h: f64) -> Result<Self, SetupError> {
+        let (first, _) = system.multibody(file, Scheme::Step, h)?;
+        Ok(Self { file: file.clone(), system: Arc::clone(system), joined: system.joined()?.0, first })
+    }
+}
+
+impl Mechanism for Driven {
+    type Numbers = MultibodyStepper;
+
+    fn layout(&self) -> &Layout {
+        self.first.layout()
+    }
+
+    fn numbers(&self, [start, length]: [f64; 2], held: &[Held]) -> Option<MultibodyStepper> {
+        let mut system = self.joined.clone();
+        self.system.act(&self.file, &mut system, self.file.at(start + length * 0.5), held).ok()?;
+        system.stepper(if length == 0.0 { self.first.step_size() } else { length }).ok()
+    }
+
+    fn start(&self, stepper: &MultibodyStepper, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
+        Propagator::start(stepper, attitude, velocity)
+    }
+
+    fn step(
+        &self,
+        _: usize,
+        stepper: &MultibodyStepper,
+        _: f64,
+        state: &mut Vec<f64>,
+    ) -> Result<StepReport, StepError> {
+        let mut next = stepper.adopt(state);
+        let report = stepper.step(&mut next)?;
+        *state = next.into();
+        Ok(report)
+    }
+
+    fn velocity(&self, stepper: &MultibodyStepper, state: &[f64]) -> Vec<f64> {
+        let mut velocity = vec![0.0; self.layout().components()];
+        Propagator::velocity(stepper, state, &mut velocity);
+        velocity
+    }
+
+    fn energy(&self, stepper: &MultibodyStepper, state: &[f64]) -> f64 {
+        stepper.energy(state)
+    }
+
+    fn push(&self, stepper: &MultibodyStepper, state: &mut [f64], impulses: &[f64]) -> Result<(), StepError> {
+        stepper.push(state, &impulses.chunks(6).map(Vector6::from_column_slice).collect::<Vec<_>>())
+    }
+
+    fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
+        self.first.spatial_momentum(state, momentum);
+    }
+
+    fn defect(&self, state: &[f64]) -> f64 {
+        self.first.defect(state)
+    }
+
+    fn gap(&self, stepper: &MultibodyStepper, state: &[f64]) -> f64 {
+        stepper.widest_gap(state)
+    }
+
+    fn joint_forces(&self, stepper: &MultibodyStepper, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+        stepper.joint_forces(&stepper.adopt(state))
     }
 }

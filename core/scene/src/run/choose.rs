@@ -1,28 +1,28 @@
 //! The stepper of one body, or of a Lagrangian of the file's own, by its method and step.
 
-use std::cell::RefCell;
-
+use liestep::SetupError;
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::mechanics::Inertia;
 use liestep::motion::{AnyStepper, Integrator as _};
 use liestep::with::{Method, Scheme};
-use liestep_late::{Course, Declaration, Question, QuestionError, for_accuracy};
+use liestep_late::{Question, QuestionError, for_accuracy};
 
-use crate::file::common::Parts as _;
 use crate::file::effects::{RotorTable, TorqueTable};
 use crate::file::lagrangian::Backend;
 use crate::file::quantity::Triple;
 use crate::file::scene::SceneFile;
 use crate::file::schedule::{Density, Pace};
-use crate::run::data::{Data, LibraryBody, Whole, inertia, nothing, numbers, whole_error};
+use crate::run::data::{Data, Whole, inertia, nothing, whole_error};
 use crate::run::devices::Devices;
 use crate::run::make::Stop;
 use crate::run::moving::MemberStart;
+use crate::run::parameters::{OneBody, Parameters};
 
 /// The step of a scene for members of an ensemble in lanes. `None` for another method, for varying steps, and for effects
 /// along orbits.
 pub(crate) fn whole(file: &SceneFile) -> Option<Whole> {
-    let is_of_one_kind = matches!(file.run.method, Scheme::Step) && !file.has_steps_of_its_own();
+    let is_of_one_kind =
+        matches!(file.run.method, Scheme::Step) && !file.has_steps_of_its_own() && file.system.is_none();
     let J = inertia(file).ok().filter(|_| is_of_one_kind && file.changing().is_none() && !file.has_devices())?;
     let Pace::Step { step, .. } = file.run.pace else { return None };
     let Data { sum, numbers } = Data::of(file, &J).ok()?;
@@ -40,34 +40,10 @@ pub(crate) fn member(file: &SceneFile, whole: &Whole) -> Result<MemberStart, Sto
     Ok((stepper, state))
 }
 
-/// The numbers of a scene's terms, as functions of time.
-struct SceneCourse {
-    file: RefCell<SceneFile>,
-    J: Inertia,
-    body: Option<LibraryBody>,
-    sum: &'static Declaration,
-}
-
-impl Course for SceneCourse {
-    fn at(&self, time: f64, places: &mut [f64]) {
-        self.over([time, 0.0], places);
-    }
-
-    fn over(&self, [start, length]: [f64; 2], places: &mut [f64]) {
-        let mut file = self.file.borrow_mut();
-        let has_all = file.set_over([start, length]);
-        let now = self.sum.described(&numbers(&file, [&self.J; 2], self.body.as_ref(), start + length * 0.5));
-        match now {
-            Ok(now) if has_all => places.copy_from_slice(&now),
-            _ => places.fill(f64::NAN),
-        }
-    }
-}
-
 /// The stepper of a scene with terms that change with time, whose values are those of each step's middle.
 fn over_time(file: &SceneFile, J: Inertia, h: f64, method: Method) -> Result<AnyStepper, Stop> {
     let Data { sum, numbers } = Data::of(file, &J)?;
-    let course = SceneCourse { file: RefCell::new(file.clone()), J, body: LibraryBody::of(file, J), sum };
+    let course = Parameters::of(file.clone(), J, sum);
     let whole = |h| Whole::of(sum, &numbers, h, method).map_err(whole_error);
     let clock = file.run.steps_per_orbit.and_then(|steps| file.orbit?.clock(steps.get()).ok());
     let driven = match clock {
@@ -88,12 +64,20 @@ fn with_devices(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop
     }
     let Data { sum, numbers } = Data::of(&file, &J)?;
     let whole = Whole::of(sum, &numbers, h, Method::default()).map_err(whole_error)?;
-    let body = LibraryBody::of(&file, J);
-    let shares = match file.run.method {
+    let shares = shares(&file);
+    if shares.len() > 1 && !sum.is_self_adjoint {
+        return Err(Stop::Setup(SetupError::NotSelfAdjoint));
+    }
+    let body = OneBody::new(Parameters::of(file.clone(), J, sum), &whole, shares.len());
+    Devices::new(file, (body, 1), (h, shares)).map(AnyStepper::new).map_err(Stop::Setup)
+}
+
+/// The lengths of the stages of a step, as shares of it.
+pub(crate) fn shares(file: &SceneFile) -> Vec<f64> {
+    match file.run.method {
         Scheme::Composition(scheme) => scheme.stages().collect(),
         _ => vec![1.0],
-    };
-    Devices::new(file, J, body, (whole, &shares)).map(AnyStepper::new).map_err(Stop::Setup)
+    }
 }
 
 /// The stepper by the file's `step`: the scene's own steps, a composition of them, or a method with an exact motion.

@@ -12,30 +12,35 @@ use crate::file::event::{Direction, Event, Quantity};
 use crate::file::pointing::View;
 use crate::file::sample::{BodySample, Sample};
 use crate::run::make::Watch;
+use crate::run::motors::ENTRIES;
 use crate::run::moving::Sampler;
+use crate::run::system::of_bodies;
 
-/// The attitude of a body, body to space.
-fn attitude(motion: &AnyMotion) -> SO3 {
-    SO3::from_matrix_unchecked(Matrix3::from_row_slice(motion.attitude()))
+/// The attitude of a body by its number, body to space.
+fn attitude(motion: &AnyMotion, body: usize) -> SO3 {
+    SO3::from_matrix_unchecked(Matrix3::from_row_slice(&motion.attitude()[ENTRIES * body..][..9]))
 }
 
-/// The angular velocity of a body, body frame, rad/s.
-fn rate(now: &Moment<'_, AnyStepper>) -> Vector3<f64> {
-    Vector3::from_column_slice(&now.velocity())
+/// The angular velocity of a body by its number, body frame, rad/s.
+fn rate(now: &Moment<'_, AnyStepper>, body: usize) -> Vector3<f64> {
+    Vector3::from_column_slice(&now.velocity()[6 * body..][..3])
 }
 
 /// The sample of a scene with these numbers at this moment.
 pub(crate) fn sample(view: &View, now: &Moment<'_, AnyStepper>) -> Sample {
+    if let Some(system) = &view.system {
+        return of_bodies(system, view, now);
+    }
     let group = &view.group;
     let (time, energy, gap, momentum) = (now.time(), now.energy(), 0.0, nalgebra::zero());
     let quaternions = Arc::clone(&group.quaternions);
     if group.is_rotation() {
-        let body = BodySample::turning(attitude(now), rate(now), Vector3::from_column_slice(now.momentum()));
+        let body = BodySample::turning(attitude(now, 0), rate(now, 0), Vector3::from_column_slice(now.momentum()));
         let angular_momentum = body.matrix() * body.momentum;
         let vectors = [body.velocity, body.momentum, angular_momentum];
         let vectors = vectors.iter().flat_map(Vector3::as_slice);
         let ends = [energy, body.attitude.defect()];
-        let seen = view.numbers((&body.matrix(), &body.velocity), (time, now.numbers()));
+        let seen = view.numbers(&[body], (time, now.numbers()));
         let numbers = body.quaternion.iter().chain(vectors).chain(&ends).chain(&seen).copied().collect();
         return Sample { time, energy, momentum, angular_momentum, gap, bodies: vec![body], numbers, quaternions };
     }
@@ -60,13 +65,13 @@ fn kind(event: &Event) -> recording::Event {
 /// The event of a file, and the function that rises through zero with its quantity through its value. A tilt is that of an axis,
 /// body frame.
 pub(crate) fn watch(event: &Event, axis: Vector3<f64>, sampler: &Sampler) -> Watch {
-    let (quantity, sampler) = (event.quantity, Arc::clone(sampler));
+    let (quantity, body, sampler) = (event.quantity, event.number, Arc::clone(sampler));
     let function = move |now: &Moment<'_, AnyStepper>| match quantity {
         // The cosine is smooth at the vertical, unlike the angle.
-        Quantity::Tilt(angle) => angle.cos() - (attitude(now).as_matrix() * axis).z,
-        Quantity::Speed(speed) => rate(now).norm_squared() - speed * speed,
-        Quantity::Velocity(component, value) => rate(now)[component] - value,
-        Quantity::Axis(component, part) => (attitude(now).as_matrix() * axis)[component] - part,
+        Quantity::Tilt(angle) => angle.cos() - (attitude(now, body).as_matrix() * axis).z,
+        Quantity::Speed(speed) => rate(now, body).norm_squared() - speed * speed,
+        Quantity::Velocity(component, value) => rate(now, body)[component] - value,
+        Quantity::Axis(component, part) => (attitude(now, body).as_matrix() * axis)[component] - part,
         Quantity::Energy(energy) => now.energy() - energy,
         Quantity::Column(place, value) => sampler(now).numbers[place] - value,
         Quantity::Angle(place, value) => {

@@ -8,7 +8,7 @@ use liestep_late::{Declaration, LateError, WholeError};
 use nalgebra::Vector3;
 
 use crate::file::body::{Distribution, Kinetic};
-use crate::file::control::of_wheels;
+use crate::file::control::locked;
 use crate::file::lagrangian::Backend;
 use crate::file::scene::SceneFile;
 use crate::file::words::in_files;
@@ -67,7 +67,7 @@ impl Data {
         let body = LibraryBody::of(file, *J);
         let sum = sum(file, body.as_ref()).map_err(|error| late_error(&error))?.ok_or_else(nothing)?;
         let numbers = sum
-            .described(&numbers(file, [J, &with_wheels(file, J)], body.as_ref(), 0.0))
+            .described(&numbers(file, [J, &locked(J, &file.wheel, 0)], body.as_ref(), 0.0))
             .map_err(|error| late_error(&error))?;
         Ok(Self { sum, numbers })
     }
@@ -85,11 +85,6 @@ pub(crate) fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
         (None, Some(_)) => Inertia::new(file.inertia().ok_or_else(nothing)?),
     };
     own.map_err(|error| Stop::Other(error.to_string()))
-}
-
-/// The inertia of the body with its wheels locked to it, at which the gravity gradient pulls.
-pub(crate) fn with_wheels(file: &SceneFile, J: &Inertia) -> Inertia {
-    if file.wheel.is_empty() { *J } else { Inertia::new(J.as_matrix() + of_wheels(&file.wheel)).unwrap_or(*J) }
 }
 
 /// The parameters of all terms at a time, in order; the second inertia is that with the wheels.

@@ -1,33 +1,75 @@
-//! Steps of a body with laws and wheels: torques that are sampled and held, and momenta that wheels exchange with the body.
+//! Steps of bodies with laws and wheels, and of several bodies along an orbit: torques that are sampled and held, momenta that
+//! wheels exchange with their bodies, and parameters over time.
 
-use std::cell::{Ref, RefCell};
-
-use liestep::mechanics::Inertia;
 use liestep::motion::{Layout, Propagator, StepReport};
 use liestep::{SetupError, StepError};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use crate::file::control::{Controller, Motor, Seen, Wheel, entries, fit, readings, stride};
 use crate::file::law::{Value, within};
 use crate::file::orbit::Time;
 use crate::file::scene::SceneFile;
-use crate::run::data::{LibraryBody, Whole, numbers, with_wheels};
 
-/// A body with laws and wheels.
+/// The spin of a body's wheels and the torque on it in a step, body frame, kg m²/s and N m.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Held {
+    pub(crate) spin: Vector3<f64>,
+    pub(crate) torque: Vector3<f64>,
+}
+
+/// The terms of a scene, whose numbers are given for each step.
+pub(crate) trait Mechanism {
+    /// The numbers of a step.
+    type Numbers;
+
+    fn layout(&self) -> &Layout;
+
+    /// The numbers of a step of this start and length, s, with the length zero those of a time; none where one isn't finite.
+    fn numbers(&self, span: [f64; 2], held: &[Held]) -> Option<Self::Numbers>;
+
+    fn start(&self, numbers: &Self::Numbers, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError>;
+
+    /// Makes a stage of a step, of this length, s; the memory of the state is that of a new start.
+    fn step(
+        &self,
+        stage: usize,
+        numbers: &Self::Numbers,
+        length: f64,
+        state: &mut Vec<f64>,
+    ) -> Result<StepReport, StepError>;
+
+    fn velocity(&self, numbers: &Self::Numbers, state: &[f64]) -> Vec<f64>;
+
+    fn energy(&self, numbers: &Self::Numbers, state: &[f64]) -> f64;
+
+    /// Adds impulses to the momenta of the bodies, N m s in the body frame and N s in space.
+    fn push(&self, numbers: &Self::Numbers, state: &mut [f64], impulses: &[f64]) -> Result<(), StepError>;
+
+    fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]);
+
+    fn defect(&self, state: &[f64]) -> f64;
+
+    fn gap(&self, _numbers: &Self::Numbers, _state: &[f64]) -> f64 {
+        0.0
+    }
+
+    fn joint_forces(&self, _: &Self::Numbers, _state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+        Ok(Vec::new())
+    }
+}
+
+/// Bodies with laws and wheels.
 ///
 /// A wheel is the term `s·Ω` of a rotor, whose momentum `s` about its axis is the mean of its momentum over the step. A motor
 /// changes `s` and nothing else, so that the momentum in space of body and wheels together is conserved as that of a rotor
 /// is, whatever the motor does. The torque of a law is that of the effect `torque`, held from sample to sample.
-pub(crate) struct Devices {
-    file: RefCell<SceneFile>,
-    /// The moments without those of the wheels about their axes.
-    J: Inertia,
-    /// The moments with wheels that are locked to the body.
-    locked: Inertia,
-    body: Option<LibraryBody>,
-    /// The inner steppers of the stages, with the numbers of the last step, and their lengths as shares of it: one stage, or
-    /// those of a composition.
-    stages: Vec<(f64, RefCell<Whole>)>,
+pub(crate) struct Devices<M> {
+    file: SceneFile,
+    mechanism: M,
+    /// The number of bodies.
+    bodies: usize,
+    /// The lengths of the stages as shares of a step: one stage, or those of a composition.
+    shares: Vec<f64>,
     layout: Layout,
     h: f64,
 }
@@ -39,7 +81,7 @@ struct Memory {
     momenta: Vec<f64>,
     /// Held torques of the laws of wheels, N m.
     motors: Vec<f64>,
-    /// Held torque of each law on the body, N m.
+    /// Held torque of each law on a body, N m.
     torques: Vec<Vector3<f64>>,
     /// The readings of the last sample of each law.
     readings: Vec<Vector3<f64>>,
@@ -66,56 +108,34 @@ impl Memory {
         let vectors = self.torques.iter().chain(&self.readings).flat_map(|vector| vector.iter().copied());
         self.momenta.iter().chain(&self.motors).copied().chain(vectors).chain([self.part])
     }
+
+    /// The momenta of the wheels this time, s, after the beginning of a step with these torques of their motors.
+    fn after(&self, motors: &[f64], time: f64) -> Vec<f64> {
+        self.momenta.iter().zip(motors).map(|(momentum, torque)| momentum + torque * time).collect()
+    }
 }
 
-impl Devices {
-    /// The stepper of a file with the terms that its devices need, whose parameters are those of `whole`; with stages of these
-    /// shares of a step.
+impl<M: Mechanism> Devices<M> {
+    /// The stepper of a file with a mechanism of this many bodies, with stages of these shares of a step of `h`, s.
     pub(crate) fn new(
         file: SceneFile,
-        J: Inertia,
-        body: Option<LibraryBody>,
-        (whole, shares): (Whole, &[f64]),
+        (mechanism, bodies): (M, usize),
+        (h, shares): (f64, Vec<f64>),
     ) -> Result<Self, SetupError> {
-        let h = whole.step_size();
         if !fit(&file.control, &file.wheel, h) {
             return Err(SetupError::Method { cause: "samples the laws between its steps" });
         }
-        if shares.len() > 1 && !whole.declaration().is_self_adjoint {
-            return Err(SetupError::NotSelfAdjoint);
-        }
-        let (layout, locked) = (whole.layout().clone(), with_wheels(&file, &J));
-        let stages = shares.iter().map(|&share| (share, RefCell::new(whole.clone()))).collect();
-        let mut all = Self { file: RefCell::new(file), J, locked, body, layout, stages, h };
-        all.layout.memory += all.length();
-        Ok(all)
+        let mut layout = mechanism.layout().clone();
+        layout.memory += entries(&file.control, &file.wheel);
+        Ok(Self { file, mechanism, bodies, shares, layout, h })
     }
 
-    /// The number of entries of the memory.
-    fn length(&self) -> usize {
-        let file = self.file.borrow();
-        entries(&file.control, &file.wheel)
-    }
-
-    fn counts(&self) -> (usize, usize) {
-        let file = self.file.borrow();
-        (file.wheel.len(), file.control.len())
-    }
-
-    /// The inner stepper of the first stage.
-    fn whole(&self) -> Ref<'_, Whole> {
-        self.stages[0].1.borrow()
-    }
-
-    fn memory(&self, state: &[f64]) -> Memory {
-        let last = state.len() - 1;
-        Memory::read(&state[last - self.length()..last], self.counts())
-    }
-
-    /// The state without the memory, as one of the inner stepper.
-    fn inner(&self, state: &[f64]) -> Vec<f64> {
-        let last = state.len() - 1;
-        [&state[..last - self.length()], &state[last..]].concat()
+    /// The state of the mechanism, with the memory of laws and wheels.
+    fn parts(&self, state: &[f64]) -> (Vec<f64>, Memory) {
+        let (last, length) = (state.len() - 1, entries(&self.file.control, &self.file.wheel));
+        let (inner, rest) = state.split_at(last - length);
+        let memory = Memory::read(&rest[..length], (self.file.wheel.len(), self.file.control.len()));
+        ([inner, &rest[length..]].concat(), memory)
     }
 
     fn with_memory(inner: &[f64], memory: &Memory) -> Box<[f64]> {
@@ -123,66 +143,74 @@ impl Devices {
         inner[..last].iter().copied().chain(memory.entries()).chain([inner[last]]).collect()
     }
 
-    /// The parameters of a step of this start and length with momenta of the wheels and the held torque; with the length zero
-    /// those of a time.
-    fn numbers(
-        &self,
-        [start, length]: [f64; 2],
-        momenta: &[f64],
-        torques: &[Vector3<f64>],
-    ) -> Result<Vec<f64>, StepError> {
-        let mut file = self.file.borrow_mut();
-        let is_known = file.set_over([start, length]);
-        let (rotor, own, spin) = (file.rotor, file.torque, spin(&file.wheel, momenta));
-        let SceneFile { control: controls, rotor: of_wheels, torque: of_laws, .. } = &mut *file;
-        if let Some(rotor) = of_wheels {
-            rotor.spin.value += spin;
+    /// The attitude of a body, body to space, and its angular velocity, body frame, in numbers of all bodies.
+    fn seen(&self, time: f64, body: usize, (state, velocity): (&[f64], &[f64])) -> Seen<'_> {
+        let [entries, components] = [self.layout.entries(), self.layout.components()].map(|all| all / self.bodies);
+        Seen {
+            now: Time { time, orbit: self.file.orbit.as_ref() },
+            attitude: Matrix3::from_row_slice(&state[body * entries..][..9]),
+            velocity: Vector3::from_column_slice(&velocity[body * components..][..3]),
         }
-        if let Some(own) = of_laws {
-            let held = controls.iter().zip(torques).filter(|(control, _)| !control.controller.is_at_ends);
-            own.torque.value += held.map(|(_, torque)| torque).sum::<Vector3<f64>>();
-        }
-        let all = numbers(&file, [&self.J, &self.locked], self.body.as_ref(), start + length * 0.5);
-        (file.rotor, file.torque) = (rotor, own);
-        let all = self.whole().declaration().described(&all).ok().filter(|_| is_known);
-        all.filter(|numbers| numbers.iter().all(|number| number.is_finite())).ok_or(OF_A_LAW)
     }
 
-    /// The angular velocity of a state, body frame; NaN if it isn't known.
-    fn rate(&self, state: &[f64], memory: &Memory) -> Vector3<f64> {
-        let numbers = self.numbers([self.time(state), 0.0], &memory.momenta, &memory.torques);
-        let rate = numbers.map(|numbers| self.whole().velocity_with(&self.inner(state), &numbers));
-        rate.map_or_else(|_| Vector3::repeat(f64::NAN), |rate| Vector3::from_column_slice(&rate))
+    /// The speed of a wheel's body about its axis, rad/s.
+    fn turning(&self, wheel: &Wheel, velocity: &[f64]) -> f64 {
+        let of_body = &velocity[wheel.body * self.layout.components() / self.bodies..][..3];
+        Vector3::from_column_slice(of_body).dot(&wheel.axis)
+    }
+
+    /// The numbers of a step of this start and length with momenta of the wheels and held torques; with the length zero
+    /// those of a time.
+    fn numbers(&self, span: [f64; 2], momenta: &[f64], torques: &[Vector3<f64>]) -> Result<M::Numbers, StepError> {
+        let mut held = vec![Held::default(); self.bodies];
+        for (wheel, momentum) in self.file.wheel.iter().zip(momenta) {
+            held[wheel.body].spin += wheel.axis * *momentum;
+        }
+        for (control, torque) in self.file.control.iter().zip(torques) {
+            if !control.controller.is_at_ends {
+                held[control.body].torque += torque;
+            }
+        }
+        self.mechanism.numbers(span, &held).ok_or(OF_A_LAW)
+    }
+
+    /// The numbers of a state's time.
+    fn now(&self, state: &[f64], memory: &Memory) -> Result<M::Numbers, StepError> {
+        self.numbers([self.time(state), 0.0], &memory.momenta, &memory.torques)
+    }
+
+    /// The velocity of a state; NaN if it isn't known.
+    fn rates(&self, state: &[f64], (inner, memory): (&[f64], &Memory)) -> Vec<f64> {
+        let rates = self.now(state, memory).map(|numbers| self.mechanism.velocity(&numbers, inner));
+        rates.unwrap_or_else(|_| vec![f64::NAN; self.layout.components()])
     }
 
     /// Takes the samples of the step ahead of a state with this velocity.
-    fn sample(&self, state: &[f64], memory: &mut Memory, velocity: Vector3<f64>) -> Result<(), StepError> {
-        let steps = state[state.len() - 1];
+    fn sample(&self, state: &[f64], memory: &mut Memory, velocity: &[f64]) -> Result<(), StepError> {
+        let (steps, time) = (state[state.len() - 1], self.time(state));
         let before = memory.clone();
-        let file = self.file.borrow();
-        let now = Time { time: self.time(state), orbit: file.orbit.as_ref() };
-        let seen = &Seen { now, attitude: Matrix3::from_row_slice(&state[..9]), velocity };
         let is_due =
             |law: &Controller| !law.is_at_ends && stride(law, self.h).is_some_and(|stride| steps % stride == 0.0);
         let mut place = 0;
-        let mut taken = |law: &Controller, speed: Option<f64>| {
+        let mut taken = |law: &Controller, body: usize, speed: Option<f64>| {
             let places = place..place + law.count_of_readings();
             place = places.end;
             is_due(law).then(|| {
+                let seen = &self.seen(time, body, (state, velocity));
                 let now = law.readings(seen);
                 let value = law.value(seen, (&now, &before.readings[places.clone()]), speed);
                 memory.readings[places].copy_from_slice(&now);
                 value
             })
         };
-        for (number, control) in file.control.iter().enumerate() {
-            if let Some(Value::Vector(value)) = taken(&control.controller, None) {
+        for (number, control) in self.file.control.iter().enumerate() {
+            if let Some(Value::Vector(value)) = taken(&control.controller, control.body, None) {
                 memory.torques[number] = control.limited(value);
             }
         }
-        for (number, wheel) in file.wheel.iter().enumerate() {
-            let speed = before.momenta[number] / wheel.inertia - seen.velocity.dot(&wheel.axis);
-            if let Some(Value::Number(value)) = wheel.controller().and_then(|law| taken(law, Some(speed))) {
+        for (number, wheel) in self.file.wheel.iter().enumerate() {
+            let speed = before.momenta[number] / wheel.inertia - self.turning(wheel, velocity);
+            if let Some(Value::Number(value)) = wheel.controller().and_then(|law| taken(law, wheel.body, Some(speed))) {
                 memory.motors[number] = value;
             }
         }
@@ -190,58 +218,62 @@ impl Devices {
         if is_finite { Ok(()) } else { Err(OF_A_LAW) }
     }
 
-    /// Writes the torques of the laws at both ends of steps into a memory, at a state of the inner stepper and at a time, s, with
-    /// these momenta of the wheels; returns their sum, N m.
+    /// Writes the torques of the laws at both ends of steps into a memory, at a state of the mechanism with these numbers and at a
+    /// time, s; returns their sum on each body, N m.
     fn at_ends(
         &self,
         (inner, time): (&[f64], f64),
-        momenta: &[f64],
+        numbers: &M::Numbers,
         memory: &mut Memory,
-    ) -> Result<Vector3<f64>, StepError> {
-        let numbers = self.numbers([time, 0.0], momenta, &memory.torques)?;
-        let velocity = Vector3::from_column_slice(&self.whole().velocity_with(inner, &numbers));
-        let file = self.file.borrow();
-        let now = Time { time, orbit: file.orbit.as_ref() };
-        let seen = &Seen { now, attitude: Matrix3::from_row_slice(&inner[..9]), velocity };
-        let mut sum = Vector3::zeros();
-        for (control, place) in file.control.iter().zip(&mut memory.torques) {
+    ) -> Result<Vec<Vector3<f64>>, StepError> {
+        let velocity = self.mechanism.velocity(numbers, inner);
+        let mut sums = vec![Vector3::zeros(); self.bodies];
+        for (control, place) in self.file.control.iter().zip(&mut memory.torques) {
             if !control.controller.is_at_ends {
                 continue;
             }
+            let seen = &self.seen(time, control.body, (inner, &velocity));
             let readings = control.controller.readings(seen);
             if let Value::Vector(value) = control.controller.value(seen, (&readings, &[]), None) {
                 *place = control.limited(value);
-                sum += *place;
+                sums[control.body] += *place;
             }
         }
-        if sum.iter().all(|part| part.is_finite()) { Ok(sum) } else { Err(OF_A_LAW) }
+        let is_finite = sums.iter().flat_map(|sum| sum.iter()).all(|part| part.is_finite());
+        if is_finite { Ok(sums) } else { Err(OF_A_LAW) }
     }
 
-    /// Gives a state of the inner stepper half of the impulse of these laws, for a step of this length, s, that begins or ends
+    /// Gives a state of the mechanism half of the impulse of these laws, for a step of this length, s, that begins or ends
     /// there. The end takes the torque of the state behind it, so that a step of `−h` undoes one of `h`.
     fn push(
         &self,
-        inner: &mut [f64],
+        inner: &mut Vec<f64>,
         [time, length]: [f64; 2],
         momenta: &[f64],
         (memory, is_end): (&mut Memory, bool),
     ) -> Result<(), StepError> {
-        if !self.file.borrow().control.iter().any(|control| control.controller.is_at_ends) {
+        if !self.file.control.iter().any(|control| control.controller.is_at_ends) {
             return Ok(());
         }
-        let place = self.layout.momentum();
-        let before = Vector3::from_column_slice(&inner[place.clone()]);
-        let mut torque = self.at_ends((inner, time), momenta, memory)?;
+        let numbers = self.numbers([time, 0.0], momenta, &memory.torques)?;
+        let size = |vectors: &[Vector3<f64>]| vectors.iter().map(Vector3::norm_squared).sum::<f64>().sqrt();
+        let of_state = |state: &[f64]| state[self.layout.momentum()].iter().map(|part| part * part).sum::<f64>().sqrt();
+        let before = inner.clone();
+        let mut torques = self.at_ends((inner, time), &numbers, memory)?;
         for _ in 0..MOST_ROUNDS {
-            let pushed = before + torque * (length * 0.5);
-            inner[place.clone()].copy_from_slice(pushed.as_slice());
+            let mut impulses = vec![0.0; self.layout.components()];
+            for (impulse, torque) in impulses.chunks_mut(self.layout.components() / self.bodies).zip(&torques) {
+                impulse[..3].copy_from_slice((torque * (length * 0.5)).as_slice());
+            }
+            inner.clone_from(&before);
+            self.mechanism.push(&numbers, inner, &impulses)?;
             if !is_end {
                 return Ok(());
             }
-            let again = self.at_ends((inner, time), momenta, memory)?;
-            let changed = (again - torque).norm() * length.abs() * 0.5;
-            torque = again;
-            if changed <= 4.0 * f64::EPSILON * pushed.norm().max(before.norm()) {
+            let again = self.at_ends((inner, time), &numbers, memory)?;
+            let changes: Vec<_> = again.iter().zip(&torques).map(|(again, torque)| again - torque).collect();
+            torques = again;
+            if size(&changes) * length.abs() * 0.5 <= 4.0 * f64::EPSILON * of_state(inner).max(of_state(&before)) {
                 return Ok(());
             }
         }
@@ -249,7 +281,7 @@ impl Devices {
     }
 
     /// The torques of the motors in a step of this start and length from a state with this velocity, within their limits, N m.
-    fn motors(&self, memory: &Memory, velocity: &Vector3<f64>, [start, length]: [f64; 2]) -> Vec<f64> {
+    fn motors(&self, memory: &Memory, velocity: &[f64], [start, length]: [f64; 2]) -> Vec<f64> {
         let of = |(number, wheel): (usize, &Wheel)| {
             let wanted = match &wheel.motor {
                 Motor::Number(torque) => *torque,
@@ -260,83 +292,66 @@ impl Devices {
                     mean.first().copied().unwrap_or(f64::NAN)
                 }
             };
-            let speed = memory.momenta[number] / wheel.inertia - velocity.dot(&wheel.axis);
+            let speed = memory.momenta[number] / wheel.inertia - self.turning(wheel, velocity);
             // A motor at its largest speed doesn't drive on; what else the body does to the speed isn't its business.
             let up = ((wheel.largest_speed - speed) * wheel.inertia / length.abs()).max(0.0);
             let down = ((wheel.largest_speed + speed) * wheel.inertia / length.abs()).max(0.0);
             let most = wheel.largest_torque;
             within(within(wanted, [-down, up]), [-most, most])
         };
-        self.file.borrow().wheel.iter().enumerate().map(of).collect()
+        self.file.wheel.iter().enumerate().map(of).collect()
+    }
+
+    /// The memory of a state with the samples of a step of this length, s, and the torques of the motors in it.
+    fn sampled(&self, state: &[f64], length: f64) -> Result<(Vec<f64>, Memory, Vec<f64>), StepError> {
+        let (inner, mut memory) = self.parts(state);
+        let velocity = self.rates(state, (&inner, &memory));
+        if length > 0.0 && memory.part == 0.0 {
+            self.sample(state, &mut memory, &velocity)?;
+        }
+        let motors = self.motors(&memory, &velocity, [self.time(state), length]);
+        if motors.iter().all(|torque| torque.is_finite()) { Ok((inner, memory, motors)) } else { Err(OF_A_LAW) }
     }
 
     /// A step of this length, s, from a state; returns the inner state and the memory. Torques are held in all of its stages, and
     /// each has the means of the wheels' momenta over its own time.
     fn advance(&self, state: &[f64], length: f64) -> Result<(Vec<f64>, Memory, StepReport), StepError> {
-        let mut memory = self.memory(state);
-        let velocity = self.rate(state, &memory);
-        if length > 0.0 && memory.part == 0.0 {
-            self.sample(state, &mut memory, velocity)?;
-        }
-        let span = [self.time(state), length];
-        let motors = self.motors(&memory, &velocity, span);
-        if !motors.iter().all(|torque| torque.is_finite()) {
-            return Err(OF_A_LAW);
-        }
-        let (mut next, mut begin, mut iterations) = (self.inner(state), 0.0, 0);
-        for (share, whole) in &self.stages {
-            let [start, length] = [span[0] + length * begin, length * share];
-            let middle = start + length * 0.5 - span[0];
-            let mean = memory.momenta.iter().zip(&motors).map(|(momentum, torque)| momentum + torque * middle);
-            let numbers = self.numbers([start, length], &mean.collect::<Vec<_>>(), &memory.torques)?;
-            let at = |offset: f64| -> Vec<f64> {
-                memory.momenta.iter().zip(&motors).map(|(momentum, torque)| momentum + torque * offset).collect()
-            };
-            let [first, last] = [start - span[0], start + length - span[0]].map(at);
+        let (mut next, mut memory, motors) = self.sampled(state, length)?;
+        let (now, mut begin, mut iterations) = (self.time(state), 0.0, 0);
+        for (stage, share) in self.shares.iter().enumerate() {
+            let [start, length] = [now + length * begin, length * share];
+            let [first, middle, last] = [0.0, 0.5, 1.0].map(|part| memory.after(&motors, start + length * part - now));
+            let numbers = self.numbers([start, length], &middle, &memory.torques)?;
             self.push(&mut next, [start, length], &first, (&mut memory, false))?;
-            {
-                let mut whole = whole.borrow_mut();
-                whole.take(&numbers, length).map_err(|_| OF_A_LAW)?;
-                let mut stage = whole.adopt(&next);
-                iterations += whole.step(&mut stage)?.iterations;
-                next = stage.to_vec();
-            }
+            iterations += self.mechanism.step(stage, &numbers, length, &mut next)?.iterations;
             self.push(&mut next, [start + length, length], &last, (&mut memory, true))?;
             begin += share;
         }
-        memory.momenta.iter_mut().zip(&motors).for_each(|(momentum, torque)| *momentum += torque * length);
+        memory.momenta = memory.after(&motors, length);
         Ok((next, memory, StepReport::of(iterations)))
     }
 }
 
-/// The momentum of wheels, body frame.
-fn spin(wheels: &[Wheel], momenta: &[f64]) -> Vector3<f64> {
-    wheels.iter().zip(momenta).map(|(wheel, momentum)| wheel.axis * *momentum).sum()
-}
-
-impl Propagator for Devices {
+impl<M: Mechanism> Propagator for Devices<M> {
     fn layout(&self) -> &Layout {
         &self.layout
     }
 
     fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
-        let rate = Vector3::from_column_slice(velocity.get(..3).unwrap_or(&[f64::NAN; 3]));
-        let momentum = |wheel: &Wheel| wheel.inertia * (rate.dot(&wheel.axis) + wheel.speed);
-        let momenta: Vec<f64> = self.file.borrow().wheel.iter().map(momentum).collect();
+        let (found, expected) = (velocity.len(), self.layout.components());
+        if found != expected {
+            return Err(SetupError::Length { what: "velocity", found, expected });
+        }
+        let momentum = |wheel: &Wheel| wheel.inertia * (self.turning(wheel, velocity) + wheel.speed);
+        let momenta: Vec<f64> = self.file.wheel.iter().map(momentum).collect();
         let numbers = self.numbers([0.0, 0.0], &momenta, &[]);
         let numbers = numbers.map_err(|_| SetupError::NonFinite { what: "momentum of a wheel" })?;
-        let whole = self.whole().with(&numbers, self.h)?;
-        let inner = whole.start(attitude, velocity)?;
+        let inner = self.mechanism.start(&numbers, attitude, velocity)?;
         // The sample before the first is that of the start.
-        let file = self.file.borrow();
-        let now = Time { time: 0.0, orbit: file.orbit.as_ref() };
-        let seen = Seen { now, attitude: Matrix3::from_row_slice(&inner[..9]), velocity: rate };
-        let readings = readings(&file.control, &file.wheel, &seen);
-        let (motors, torques) = (vec![0.0; momenta.len()], vec![Vector3::zeros(); file.control.len()]);
-        drop(file);
+        let readings = readings(&self.file.control, &self.file.wheel, &|body| self.seen(0.0, body, (&inner, velocity)));
+        let (motors, torques) = (vec![0.0; momenta.len()], vec![Vector3::zeros(); self.file.control.len()]);
         let mut memory = Memory { momenta, motors, torques, readings, part: 0.0 };
-        let momenta = memory.momenta.clone();
-        let known = self.at_ends((&inner, 0.0), &momenta, &mut memory);
+        let known = self.at_ends((&inner, 0.0), &numbers, &mut memory);
         known.map_err(|_| SetupError::NonFinite { what: "torque of a law" })?;
         Ok(Self::with_memory(&inner, &memory))
     }
@@ -347,6 +362,25 @@ impl Propagator for Devices {
         next[last] = steps + 1.0;
         memory.part = 0.0;
         state.copy_from_slice(&Self::with_memory(&next, &memory));
+        Ok(report)
+    }
+
+    fn step_forced(&self, state: &mut [f64], force: &[f64]) -> Result<StepReport, StepError> {
+        let mut next = self.layout.checked(state)?.to_vec();
+        if force.len() != self.layout.components() || !force.iter().all(|part| part.is_finite()) {
+            return Err(StepError::NonFinite { what: "control force" });
+        }
+        let impulses: Vec<f64> = force.iter().map(|part| part * (self.h * 0.5)).collect();
+        let push = |state: &mut [f64]| {
+            let (mut inner, memory) = self.parts(state);
+            self.mechanism.push(&self.now(state, &memory)?, &mut inner, &impulses)?;
+            state.copy_from_slice(&Self::with_memory(&inner, &memory));
+            Ok(())
+        };
+        push(&mut next)?;
+        let report = self.step(&mut next)?;
+        push(&mut next)?;
+        state.copy_from_slice(&next);
         Ok(report)
     }
 
@@ -365,22 +399,34 @@ impl Propagator for Devices {
 
     fn adopt(&self, state: &[f64]) -> Box<[f64]> {
         let nowhere = || vec![f64::NAN; self.layout.state()].into();
-        let (Some(attitude), Some(momentum)) = (state.get(self.layout.attitude()), state.get(self.layout.momentum()))
-        else {
+        let known = self.layout.momentum().end;
+        let (Some(known), Some(attitude)) = (state.get(..known), state.get(self.layout.attitude())) else {
             return nowhere();
         };
-        // The momentum is affine in the velocity, with the wheels at their speeds relative to the body.
-        let at = |velocity: Vector3<f64>| {
-            let state = self.start(attitude, velocity.as_slice()).ok()?;
-            Some(Vector3::from_column_slice(&state[self.layout.momentum()]))
+        let wheels = &self.file.wheel;
+        let inner: Vec<f64> = known.iter().copied().chain(vec![0.0; self.mechanism.layout().memory + 1]).collect();
+        // The velocity is affine in those of bodies about their wheels' axes, with the wheels at their speeds relative to them.
+        let velocity = |turning: &DVector<f64>| {
+            let momenta =
+                wheels.iter().zip(turning.iter()).map(|(wheel, turning)| wheel.inertia * (turning + wheel.speed));
+            let numbers = self.numbers([0.0, 0.0], &momenta.collect::<Vec<_>>(), &[]).ok()?;
+            Some(self.mechanism.velocity(&numbers, &inner))
         };
-        let velocity = || {
-            let rest = at(Vector3::zeros())?;
-            let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| Some(at(axis)? - rest));
-            let locked = Matrix3::from_columns(&[x?, y?, z?]).try_inverse()?;
-            Some(locked * (Vector3::from_column_slice(momentum) - rest))
+        let about = |turning: &DVector<f64>| {
+            let velocity = velocity(turning)?;
+            Some(DVector::from_iterator(wheels.len(), wheels.iter().map(|wheel| self.turning(wheel, &velocity))))
         };
-        velocity().and_then(|velocity| self.start(attitude, velocity.as_slice()).ok()).unwrap_or_else(nowhere)
+        let found = || {
+            let rest = about(&DVector::zeros(wheels.len()))?;
+            let mut matrix = DMatrix::identity(wheels.len(), wheels.len());
+            for wheel in 0..wheels.len() {
+                let mut turning = DVector::zeros(wheels.len());
+                turning[wheel] = 1.0;
+                matrix.set_column(wheel, &(&turning - (about(&turning)? - &rest)));
+            }
+            self.start(attitude, &velocity(&matrix.lu().solve(&rest)?)?).ok()
+        };
+        found().unwrap_or_else(nowhere)
     }
 
     fn step_size(&self) -> f64 {
@@ -395,30 +441,45 @@ impl Propagator for Devices {
     }
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
-        let found = self.layout.checked(state).map(|state| self.rate(state, &self.memory(state)));
-        let found = found.unwrap_or_else(|_| Vector3::repeat(f64::NAN));
-        velocity.iter_mut().zip(found.iter()).for_each(|(place, part)| *place = *part);
+        let found = self.layout.checked(state).map(|state| {
+            let (inner, memory) = self.parts(state);
+            self.rates(state, (&inner, &memory))
+        });
+        let found = found.unwrap_or_else(|_| vec![f64::NAN; velocity.len()]);
+        velocity.iter_mut().zip(found).for_each(|(place, part)| *place = part);
     }
 
     fn energy(&self, state: &[f64]) -> f64 {
         let Ok(state) = self.layout.checked(state) else { return f64::NAN };
-        let memory = self.memory(state);
-        let numbers = self.numbers([self.time(state), 0.0], &memory.momenta, &memory.torques);
-        let energy = |numbers: Vec<f64>| self.whole().energy_with(&self.inner(state), &numbers);
-        let of_body = numbers.map_or(f64::NAN, energy);
-        let file = self.file.borrow();
+        let (inner, memory) = self.parts(state);
+        let of_bodies = self.now(state, &memory).map_or(f64::NAN, |numbers| self.mechanism.energy(&numbers, &inner));
         let of_wheel = |(wheel, momentum): (&Wheel, &f64)| momentum * momentum / (2.0 * wheel.inertia);
-        of_body + file.wheel.iter().zip(&memory.momenta).map(of_wheel).sum::<f64>()
+        of_bodies + self.file.wheel.iter().zip(&memory.momenta).map(of_wheel).sum::<f64>()
     }
 
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
         match self.layout.checked(state) {
-            Ok(state) => self.whole().spatial_momentum(&self.inner(state), momentum),
+            Ok(state) => self.mechanism.spatial_momentum(&self.parts(state).0, momentum),
             Err(_) => momentum.fill(f64::NAN),
         }
     }
 
     fn defect(&self, state: &[f64]) -> f64 {
-        self.layout.checked(state).map_or(f64::NAN, |state| self.whole().defect(&self.inner(state)))
+        self.layout.checked(state).map_or(f64::NAN, |state| self.mechanism.defect(&self.parts(state).0))
+    }
+
+    fn gap(&self, state: &[f64]) -> f64 {
+        let gap = self.layout.checked(state).and_then(|state| {
+            let (inner, memory) = self.parts(state);
+            Ok(self.mechanism.gap(&self.now(state, &memory)?, &inner))
+        });
+        gap.unwrap_or(f64::NAN)
+    }
+
+    fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+        let (inner, memory, motors) = self.sampled(self.layout.checked(state)?, self.h)?;
+        let span = [self.time(state), self.h];
+        let numbers = self.numbers(span, &memory.after(&motors, self.h * 0.5), &memory.torques)?;
+        self.mechanism.joint_forces(&numbers, &inner)
     }
 }

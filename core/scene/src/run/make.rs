@@ -107,8 +107,11 @@ pub(crate) fn fast_turn(turn: f64) -> Option<String> {
     })
 }
 
-/// A remark about a file, with its line and column.
-pub(crate) type Note = ((usize, usize), String);
+/// Line and column in a file, from one.
+pub(crate) type Place = (usize, usize);
+
+/// A remark about a file, with its place.
+pub(crate) type Note = (Place, String);
 
 /// The receivers of a run's progress and of its table.
 pub(crate) struct Listeners<'a> {

@@ -12,6 +12,7 @@ pub(crate) mod model;
 mod motors;
 pub(crate) mod moving;
 mod nearest;
+mod parameters;
 pub(crate) mod scene;
 mod second;
 mod single;

@@ -5,7 +5,6 @@ use liestep::with::{Method, Scheme};
 use liestep_derivation::{ParameterKind, Role};
 use liestep_late::{Declaration, Whole, numbered};
 
-use crate::file::common::Parts as _;
 use crate::file::effects::EFFECTS;
 use crate::file::scene::SceneFile;
 use crate::file::schedule::Pace;
@@ -89,6 +88,9 @@ impl Model {
 
     /// The model of a scene, or the reason why it has none.
     pub(crate) fn of(file: &SceneFile) -> Result<Self, String> {
+        if file.system.is_some() {
+            return Err("it has several bodies, and a unit has one so far".to_owned());
+        }
         let Pace::Step { step, steps } = file.run.pace else {
             return Err("the step is chosen by trial runs: give the run a `step`".to_owned());
         };

@@ -6,13 +6,13 @@ use liestep::motion::{AnyStepper, Moment};
 use liestep::recording::Sink;
 
 use crate::file::column::Column;
-use crate::file::common::Parts as _;
-use crate::file::kinds::{Content, Scene, of_parts};
+use crate::file::kinds::Scene;
 use crate::file::mistake::Mistake;
 use crate::run::choose;
+use crate::run::course::sample;
 use crate::run::data::Whole;
 use crate::run::make::{Listeners, Run, Watch};
-use crate::run::moving::{MemberStart, Moving as _, first, run, started};
+use crate::run::moving::MemberStart;
 
 impl Scene {
     /// Simulates the scene.
@@ -46,7 +46,7 @@ impl Scene {
         progress: &'a mut dyn FnMut(f64),
         table: Option<&'a mut dyn Sink>,
     ) -> Result<Run, Mistake> {
-        of_parts!(self, parts => run(parts, Listeners { progress, table }).map_err(|stop| parts.mistake(stop)))
+        self.file.simulate(Listeners { progress, table }).map_err(|stop| self.file.mistake(stop))
     }
 
     /// Simulates the scene up to a number of steps. A scene with an accuracy is simulated to its end, as its step isn't
@@ -56,7 +56,7 @@ impl Scene {
     ///
     /// The errors of [`run`](Self::run).
     pub fn first(&self, most: u32) -> Result<Run, Mistake> {
-        of_parts!(self, parts => first(parts, most).map_err(|stop| parts.mistake(stop)))
+        self.file.first(most).map_err(|stop| self.file.mistake(stop))
     }
 
     /// The stepper of the scene, with its initial state.
@@ -65,14 +65,14 @@ impl Scene {
     ///
     /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the scene can't be started.
     pub fn stepper(&self) -> Result<MemberStart, Mistake> {
-        of_parts!(self, parts => started(parts).map_err(|stop| parts.mistake(stop)))
+        self.file.started().map_err(|stop| self.file.mistake(stop))
     }
 
     /// The scene's step as data, for members of its ensemble in lanes. `None` for several bodies, for another method, for varying
     /// steps, and for effects along orbits.
     #[must_use]
     pub fn whole(&self) -> Option<Whole> {
-        if let Content::Body(file) = &self.content { choose::whole(file) } else { None }
+        choose::whole(&self.file)
     }
 
     /// The stepper and the initial state for lanes, from the step of a file that differs from this one in numbers
@@ -82,23 +82,20 @@ impl Scene {
     ///
     /// The errors of [`stepper`](Self::stepper).
     pub fn in_lanes(&self, whole: &Whole) -> Result<MemberStart, Mistake> {
-        match &self.content {
-            Content::Body(file) => choose::member(file, whole).map_err(|stop| file.mistake(stop)),
-            Content::System(_) => self.stepper(),
-        }
+        choose::member(&self.file, whole).map_err(|stop| self.file.mistake(stop))
     }
 
     /// The numbers of these columns at a moment, one after the other. The sign of a quaternion is arbitrary.
     #[must_use]
     pub fn numbers(&self, columns: &[Column], now: &Moment<'_, AnyStepper>) -> Vec<f64> {
-        let now = of_parts!(self, parts => parts.sample(now));
+        let now = sample(&self.file.view(), now);
         Column::row(columns, &now, &now)
     }
 
     /// The events to be detected, in the order of their [names](Self::events).
     #[must_use]
     pub fn watches(&self) -> Vec<Watch> {
-        of_parts!(self, parts => parts.watches())
+        self.file.watches()
     }
 
     /// The events of a run as comma-separated values: name, 1 where the quantity rose and 0 where it fell, time, and
@@ -115,10 +112,9 @@ impl Scene {
     #[must_use]
     pub fn summary(&self, run: &Run) -> String {
         let events = run.events_in_words(self.events());
-        let ends = of_parts!(self, parts => {
-            let ends = |first: &_, last: &_| parts.ends_in_words(run, [first, last]) + &events;
-            run.summary(parts.title(), &parts.sum(), parts.unit_of_energy(), ends)
-        });
+        let file = &self.file;
+        let ends = |first: &_, last: &_| file.ends_in_words(run, [first, last]) + &events;
+        let ends = run.summary(&file.title, &file.sum(), file.group.unit_of_energy(), ends);
         let choice = run.choice.as_ref().map(|choice| {
             let (error, accuracy, method) = (choice.error, choice.accuracy.tolerance, choice.chosen().scheme);
             if self.schedule().is_left_open {
@@ -133,6 +129,7 @@ impl Scene {
     /// Differences between the nearest start and the file, a line for each of several bodies that has one.
     #[must_use]
     pub fn changes(&self, run: &Run) -> String {
-        of_parts!(self, parts => parts.changes(run))
+        let of_system = self.file.system.as_ref().filter(|_| self.file.run.nearest);
+        of_system.map_or_else(String::new, |system| system.changes(run))
     }
 }

@@ -4,12 +4,11 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use crate::file::kinds::{Scene, of_parts};
+use crate::file::kinds::Scene;
 use crate::file::quantity::round;
 use crate::file::sample::Sample;
 use crate::file::schedule::Pace;
 use crate::run::make::{Listeners, Run, Stop};
-use crate::run::moving::{self, Moving};
 
 /// Difference of attitudes, rad, beyond which two runs are different motions.
 const ANOTHER: f64 = 1.0;
@@ -136,18 +135,15 @@ impl Scene {
     /// Empty where steps vary or were chosen for an accuracy.
     #[must_use]
     pub fn end_error(&self, run: &Run) -> String {
-        of_parts!(self, parts => end_error(parts, run))
+        let file = &self.file;
+        if file.has_steps_of_its_own() || run.choice.is_some() {
+            return String::new();
+        }
+        let again = |steps, step| {
+            let mut second = (**file).clone().unwatched();
+            second.run.pace = Pace::Step { step, steps };
+            second.simulate(Listeners { progress: &mut |_| (), table: None })
+        };
+        line(run, file.order(), file.places().as_ref(), again).unwrap_or_default()
     }
-}
-
-fn end_error<P: Moving>(parts: &P, run: &Run) -> String {
-    if parts.has_steps_of_its_own() || run.choice.is_some() {
-        return String::new();
-    }
-    let again = |steps, step| {
-        let mut second = parts.clone().unwatched();
-        second.schedule_mut().pace = Pace::Step { step, steps };
-        moving::run(&second, Listeners { progress: &mut |_| (), table: None })
-    };
-    line(run, parts.order(), parts.places().as_ref(), again).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! The run of one body, or of a Lagrangian of the file's own.
+//! The run of a scene: its stepper, its samples and events, and the words about its end.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,17 +9,16 @@ use liestep::with::Scheme;
 use liestep::{SetupError, StepError};
 
 use crate::file::body::Kinetic;
-use crate::file::column::Column;
-use crate::file::common::Parts as _;
 use crate::file::mistake::Mistake;
 use crate::file::pointing::at_the_end;
 use crate::file::quantity::short;
 use crate::file::sample::Sample;
 use crate::file::scene::{Origin, SceneFile};
+use crate::file::system::System;
 use crate::run::choose;
 use crate::run::course::{sample, watch};
-use crate::run::make::{Note, Run, Stop, Watch, fast_turn};
-use crate::run::moving::{Begun, Moving, Sampler};
+use crate::run::make::{Note, Place, Run, Stop, Watch, fast_turn};
+use crate::run::moving::{Begun, Sampler};
 
 impl SceneFile {
     /// A note about a body that turns too far in a step of (3.13).
@@ -36,10 +35,12 @@ impl SceneFile {
                    `relative_to = \"local vertical\"`, or `relative_to = \"space\"` if that is meant";
         self.law_of_no_frame().map(|_| (self.origin.places.law, why.to_owned()))
     }
-}
 
-impl Moving for SceneFile {
-    fn begun(&self, step: f64) -> Result<Begun, Stop> {
+    /// The stepper by the method of the schedule and a step, s, at the start.
+    pub(crate) fn begun(&self, step: f64) -> Result<Begun, Stop> {
+        if let Some(system) = &self.system {
+            return system.begun(self, step);
+        }
         let of_kicks = self.check_kicks()?;
         let stepper = choose::by_steps(self, step)?;
         let state = self.start.state(&stepper).map_err(Stop::Start)?;
@@ -47,30 +48,49 @@ impl Moving for SceneFile {
         Ok(Begun { start: (stepper, state), notes: notes.collect() })
     }
 
-    fn searched(&self, accuracy: Accuracy) -> Result<Choice, Stop> {
+    /// The cheapest choice of method and step for an accuracy.
+    pub(crate) fn searched(&self, accuracy: Accuracy) -> Result<Choice, Stop> {
+        if let Some(system) = &self.system {
+            return system.searched(self, accuracy);
+        }
         self.check_kicks()?;
         choose::searched(self, accuracy)
     }
 
-    fn sample(&self, now: &Moment<'_, AnyStepper>) -> Sample {
-        sample(&self.view(), now)
-    }
-
-    fn sampler(&self) -> Sampler {
+    pub(crate) fn sampler(&self) -> Sampler {
         let view = self.view();
         Arc::new(move |now: &Moment<'_, AnyStepper>| sample(&view, now))
     }
 
-    fn watches(&self) -> Vec<Watch> {
+    /// The events that a run detects.
+    pub(crate) fn watches(&self) -> Vec<Watch> {
         let sampler = self.sampler();
-        self.event.iter().map(|event| watch(event, self.picture.axis.0, &sampler)).collect()
+        let of_file = self.event.iter().map(|event| watch(event, self.picture.axis.0, &sampler));
+        of_file.chain(self.system.iter().flat_map(|system| system.watches())).collect()
     }
 
-    fn mistake(&self, stop: Stop) -> Mistake {
+    /// The mistake for a failed run, with its place in the file.
+    pub(crate) fn mistake(&self, stop: Stop) -> Mistake {
         let Origin { path, places } = &self.origin;
+        let stop = match stop {
+            Stop::Table(message) => return Mistake::of_table(path, message),
+            stop => stop,
+        };
+        let (place, mut message) = match &self.system {
+            Some(system) => system.mistake(&stop, self.run.nearest),
+            None => self.mistake_of_body(&stop),
+        };
+        if let Stop::Accuracy(_) = stop {
+            message.push_str(self.run.advice());
+        }
+        Mistake::of_run(path, place.unwrap_or(places.pace), message)
+    }
+
+    /// The place and the message of a failed run of one body, or of a Lagrangian of the file's own.
+    fn mistake_of_body(&self, stop: &Stop) -> (Option<Place>, String) {
+        let places = &self.origin.places;
         let mut message = stop.to_string();
         let place = match stop {
-            Stop::Table(message) => return Mistake::of_table(path, message),
             Stop::Step { cause: StepError::BeyondSolvable { .. }, .. } => {
                 if self.body.is_some() && self.kinetic() == Kinetic::Rigid {
                     message.push_str(", or `kinetic = \"geodesic\"` of the body, which may turn further");
@@ -82,13 +102,8 @@ impl Moving for SceneFile {
                     let hint = format!("; numbers alone are in rad/s: were degrees meant, write \"{fastest} deg/s\"");
                     message.push_str(&hint);
                 }
-                places.pace
+                return (None, message);
             }
-            Stop::Accuracy(_) => {
-                message.push_str(self.run.advice());
-                places.pace
-            }
-            Stop::Setup(SetupError::InvalidStep { .. }) | Stop::Step { .. } | Stop::Other(_) => places.pace,
             // Requirements of a method on the scene.
             Stop::Setup(
                 SetupError::NotSeparable { .. }
@@ -96,36 +111,39 @@ impl Moving for SceneFile {
                 | SetupError::BiasMismatch
                 | SetupError::NoForceGradient,
             ) => places.method,
+            Stop::Setup(SetupError::InvalidStep { .. }) => places.pace,
             Stop::Setup(_) => places.body,
             Stop::Spring(..) => places.spring,
             Stop::Start(SetupError::NotInGroup { .. }) => places.attitude,
             Stop::Start(_) => places.start,
+            _ => places.pace,
         };
-        Mistake::of_run(path, place, message)
+        (Some(place), message)
     }
 
-    fn order(&self) -> u32 {
+    /// The order of the scene's method.
+    pub(crate) fn order(&self) -> u32 {
         match self.run.method {
             Scheme::Step => self.own_order(),
             scheme => scheme.order(),
         }
     }
 
-    fn errors(&self) -> Vec<Column> {
-        let mut all = Column::of_group(&self.group);
-        all.retain(|column| ["energy-error", "momentum-error"].contains(&column.key()));
-        all
-    }
-
-    fn places(&self) -> Option<[Range<usize>; 2]> {
+    /// The places of attitude and velocity among the numbers of a sample, on a group without bodies.
+    pub(crate) fn places(&self) -> Option<[Range<usize>; 2]> {
         (!self.group.is_rotation()).then(|| [self.group.attitude(), self.group.velocity()])
     }
 
-    fn unit_of_energy(&self) -> &'static str {
-        self.group.unit_of_energy()
+    /// The failure of a run that came to its end.
+    pub(crate) fn fault(&self, run: &Run) -> Option<Stop> {
+        self.system.as_ref().and_then(|_| System::fault(run))
     }
 
-    fn ends_in_words(&self, _run: &Run, ends: [&Sample; 2]) -> String {
+    /// The part of a summary behind the energy: the ends of a run in words.
+    pub(crate) fn ends_in_words(&self, run: &Run, ends: [&Sample; 2]) -> String {
+        if let Some(system) = &self.system {
+            return system.gaps(run);
+        }
         let unit = if self.group.is_rotation() { " kg m²/s" } else { "" };
         let norm = |sample: &Sample| sample.numbers[self.group.in_space()].iter().map(|part| part * part).sum::<f64>();
         let [before, after] = ends.map(|sample| short(norm(sample).sqrt()));

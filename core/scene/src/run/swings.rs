@@ -4,7 +4,6 @@ use liestep::mechanics::Inertia;
 use liestep::with::Scheme;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::file::common::Parts as _;
 use crate::file::orbit::VectorInTime;
 use crate::file::quantity::{round, short};
 use crate::file::scene::SceneFile;

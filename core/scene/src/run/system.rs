@@ -11,17 +11,19 @@ use liestep::{SO3, SetupError, StepError};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::file::body::Kinetic;
-use crate::file::column::Column;
 use crate::file::joint::{Joint, Limits};
-use crate::file::mistake::Mistake;
 use crate::file::part::{Between, SystemBody};
+use crate::file::pointing::View;
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
+use crate::file::scene::SceneFile;
 use crate::file::system::System;
-use crate::run::course::watch;
-use crate::run::make::{Note, Run, Stop, Watch, fast_turn, told};
+use crate::run::bodies::Driven;
+use crate::run::choose::shares;
+use crate::run::devices::Devices;
+use crate::run::make::{Note, Place, Run, Stop, Watch, fast_turn, told};
 use crate::run::motors::{ENTRIES, pose};
-use crate::run::moving::{Begun, Moving, Sampler};
+use crate::run::moving::Begun;
 
 /// The quantity that violates a constraint, for messages.
 const GAP: &str = "lengths in m and cosines of axes together";
@@ -50,7 +52,7 @@ fn beyond(joint: &Between<Joint>, limits: Limits, state: &[f64]) -> f64 {
 
 /// The bodies at this moment, with the numbers of all columns; forces and torques of joints, for which a step is made, only
 /// where they are asked for.
-fn sample(system: &System, now: &Moment<'_, AnyStepper>) -> Sample {
+pub(crate) fn of_bodies(system: &System, view: &View, now: &Moment<'_, AnyStepper>) -> Sample {
     let mut sample = bodies_at(system.bodies.len(), now);
     let Sample { bodies, energy, momentum, angular_momentum, gap, .. } = &sample;
     let mut numbers: Vec<f64> = Vec::new();
@@ -67,6 +69,7 @@ fn sample(system: &System, now: &Moment<'_, AnyStepper>) -> Sample {
     numbers.extend(turning.map(|(_, sign, [angle, _])| sign * angle));
     let shifting = coordinates.iter().filter(|(kind, ..)| kind.shifts_along_axis());
     numbers.extend(shifting.map(|(_, sign, [_, shift])| sign * shift));
+    numbers.extend(view.numbers(bodies, (now.time(), now.numbers())));
     if system.has_reactions {
         let none = || vec![[Vector3::repeat(f64::NAN); 2]; system.joints.len()];
         let forces = now.integrator().joint_forces(now).unwrap_or_else(|_| none());
@@ -77,7 +80,7 @@ fn sample(system: &System, now: &Moment<'_, AnyStepper>) -> Sample {
             numbers.extend(&(torque - arm.cross(force)));
         }
     }
-    sample.quaternions = Arc::clone(&system.quaternions);
+    sample.quaternions = Arc::clone(&view.group.quaternions);
     sample.numbers = numbers;
     sample
 }
@@ -113,29 +116,45 @@ fn left_out_of(one: &Redundancy) -> String {
     format!("{functions} implied by the other joints, and left out; the motion is the same")
 }
 
-impl Moving for System {
-    fn begun(&self, step: f64) -> Result<Begun, Stop> {
-        let (stepper, left_out) = self.multibody(self.run.method, step).map_err(Stop::Setup)?;
-        let state = self.start(&stepper).map_err(Stop::Start)?;
+impl System {
+    /// The stepper of a file by its method and a step, s, at the start.
+    pub(crate) fn begun(self: &Arc<Self>, file: &SceneFile, step: f64) -> Result<Begun, Stop> {
+        let is_driven = file.has_devices() || file.changing().is_some();
+        let method = if is_driven { Scheme::Step } else { file.run.method };
+        let (stepper, left_out) = self.multibody(file, method, step).map_err(Stop::Setup)?;
+        let state = self.start(&stepper, file.run.nearest).map_err(Stop::Start)?;
         let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
-        let of_springs = self.check_springs(&places, self.run.given_step().map(|_| step))?;
-        let any = AnyStepper::new(stepper);
-        let state = any.state_of(&state).ok_or_else(|| Stop::Other("a state of another system".to_owned()))?;
+        let of_springs = self.check_springs(&places, file.run.given_step().map(|_| step))?;
+        let start = if is_driven {
+            let (layout, mut velocity) = (stepper.layout(), vec![0.0; stepper.layout().components()]);
+            Propagator::velocity(&stepper, &state, &mut velocity);
+            let bodies = Driven::new(file, self, step).map_err(Stop::Setup)?;
+            let driven = Devices::new(file.clone(), (bodies, self.bodies.len()), (step, shares(file)));
+            let any = AnyStepper::new(driven.map_err(Stop::Setup)?);
+            let state = any.start(&state[layout.attitude()], &velocity).map_err(Stop::Start)?;
+            (any, state)
+        } else {
+            let any = AnyStepper::new(stepper);
+            let state = any.state_of(&state).ok_or_else(|| Stop::Other("a state of another system".to_owned()))?;
+            (any, state)
+        };
         let of_springs = of_springs.map(|(spring, why)| (self.places.springs[spring], why));
-        let left_out = left_out.into_iter().map(|one| (self.of_joint(one.joint), left_out_of(&one)));
-        Ok(Begun { start: (any, state), notes: left_out.chain(of_springs).chain(self.fast_turns()).collect() })
+        let left_out = left_out.into_iter().filter_map(|one| Some((self.of_joint(one.joint)?, left_out_of(&one))));
+        let fast = self.fast_turns(file.run.step().unwrap_or_default());
+        Ok(Begun { start, notes: left_out.chain(of_springs).chain(fast).collect() })
     }
 
-    fn searched(&self, accuracy: Accuracy) -> Result<Choice, Stop> {
+    /// The cheapest choice of method and step for an accuracy.
+    pub(crate) fn searched(&self, file: &SceneFile, accuracy: Accuracy) -> Result<Choice, Stop> {
         // Attitudes and velocities at the start don't depend on the step.
-        let (stepper, _) = self.multibody(Scheme::Step, accuracy.horizon / 1024.0).map_err(Stop::Setup)?;
-        let state = self.start(&stepper).map_err(Stop::Start)?;
+        let (stepper, _) = self.multibody(file, Scheme::Step, accuracy.horizon / 1024.0).map_err(Stop::Setup)?;
+        let state = self.start(&stepper, file.run.nearest).map_err(Stop::Start)?;
         let (layout, attitude) = (stepper.layout(), &state[stepper.layout().attitude()]);
         let mut velocity = vec![0.0; layout.components()];
         Propagator::velocity(&stepper, &state, &mut velocity);
         let candidate = |scheme| {
-            let system = self.clone();
-            let make = move |h| Ok(AnyStepper::new(system.multibody(scheme, h)?.0));
+            let (system, file) = (self.clone(), file.clone());
+            let make = move |h| Ok(AnyStepper::new(system.multibody(&file, scheme, h)?.0));
             Candidate { scheme, make: Box::new(make) }
         };
         // A point mass has no step back, either.
@@ -146,58 +165,38 @@ impl Moving for System {
         chosen.map(|(_, choice)| choice).map_err(Stop::Accuracy)
     }
 
-    fn sample(&self, now: &Moment<'_, AnyStepper>) -> Sample {
-        sample(self, now)
-    }
-
-    fn sampler(&self) -> Sampler {
-        let system = self.clone();
-        Arc::new(move |now: &Moment<'_, AnyStepper>| sample(&system, now))
-    }
-
-    fn watches(&self) -> Vec<Watch> {
-        let sampler = self.sampler();
-        let of_file = self.event.iter().map(|event| watch(event, Vector3::z(), &sampler));
-        let of_joints = self.limited().map(|(number, limits)| {
+    /// The events of joints with limits.
+    pub(crate) fn watches(&self) -> impl Iterator<Item = Watch> {
+        self.limited().map(|(number, limits)| {
             let joint = self.joints[number];
             let function = move |now: &Moment<'_, AnyStepper>| beyond(&joint, limits, now.numbers());
             Watch { event: recording::Event::rising(), function: Box::new(function), stops: limits.stops }
-        });
-        of_file.chain(of_joints).collect()
+        })
     }
 
-    fn mistake(&self, stop: Stop) -> Mistake {
-        let (place, message) = match stop {
-            Stop::Table(message) => return Mistake::of_table(&self.path, message),
-            Stop::Setup(error) | Stop::Start(error) => self.obstacle(error),
+    /// The place and the message of a failed run, where they are those of a body, a joint or a spring; `is_nearest` says whether
+    /// joints were to be closed.
+    pub(crate) fn mistake(&self, stop: &Stop, is_nearest: bool) -> (Option<Place>, String) {
+        match stop {
+            Stop::Setup(error) | Stop::Start(error) => self.obstacle(error, is_nearest),
             Stop::Step { time, cause } => {
-                let (place, why) = self.end_of_steps(&cause);
-                (place, format!("stopped at t = {} s: {why}", short(time)))
+                let (place, why) = self.end_of_steps(cause);
+                (place, format!("stopped at t = {} s: {why}", short(*time)))
             }
-            stop @ Stop::Accuracy(_) => (self.places.pace, format!("{stop}{}", self.run.advice())),
-            Stop::Spring(spring, why) => (self.places.springs[spring], why),
-            stop => (self.places.pace, stop.to_string()),
-        };
-        Mistake::of_run(&self.path, place, message)
+            Stop::Spring(spring, why) => (self.places.springs.get(*spring).copied(), why.clone()),
+            stop => (None, stop.to_string()),
+        }
     }
 
-    fn order(&self) -> u32 {
-        self.run.method.order()
-    }
-
-    fn errors(&self) -> Vec<Column> {
-        let mut all = self.all_columns();
-        all.retain(|column| column.key() == "energy-error");
-        all
-    }
-
-    fn fault(&self, run: &Run) -> Option<Stop> {
+    /// The failure of a run that came to its end.
+    pub(crate) fn fault(run: &Run) -> Option<Stop> {
         let sample = run.samples().iter().find(|sample| !sample.energy.is_finite())?;
         let time = short(sample.time);
         Some(Stop::Other(format!("the energy is beyond all numbers at t = {time} s; give smaller ones")))
     }
 
-    fn ends_in_words(&self, run: &Run, _ends: [&Sample; 2]) -> String {
+    /// How far joints were open in a run.
+    pub(crate) fn gaps(&self, run: &Run) -> String {
         if self.joints.is_empty() {
             return String::new();
         }
@@ -206,8 +205,9 @@ impl Moving for System {
         format!(", joints open by {widest:.1e} {unit} at most")
     }
 
-    fn changes(&self, run: &Run) -> String {
-        let Some(start) = run.samples().first().filter(|_| self.run.nearest) else { return String::new() };
+    /// Differences between the start of a run and that of the file.
+    pub(crate) fn changes(&self, run: &Run) -> String {
+        let Some(start) = run.samples().first() else { return String::new() };
         let line = |(given, now): (&SystemBody, &BodySample)| {
             let turned = SO3::from(given.start.attitude).as_matrix() - now.attitude.as_matrix();
             let turned = 2.0 * (turned.norm() / 8.0_f64.sqrt()).min(1.0).asin();
@@ -245,22 +245,21 @@ fn displaced(attitude: &[f64]) -> Vec<f64> {
 
 impl System {
     /// Notes about bodies that turn too far in a step of (3.13).
-    fn fast_turns(&self) -> impl Iterator<Item = Note> {
-        let step = self.run.step().unwrap_or_default();
+    fn fast_turns(&self, step: f64) -> impl Iterator<Item = Note> {
         let rigid = self.bodies.iter().zip(&self.places.bodies).filter(|(body, _)| body.kinetic == Kinetic::Rigid);
         rigid.filter_map(move |(body, place)| Some((*place, fast_turn(step * body.start.velocity.norm())?)))
     }
 
     /// The place in the file of the joint with this number.
-    fn of_joint(&self, joint: usize) -> (usize, usize) {
-        self.places.joints.get(joint).copied().unwrap_or(self.places.pace)
+    fn of_joint(&self, joint: usize) -> Option<Place> {
+        self.places.joints.get(joint).copied()
     }
 
     /// The reason why the system can't be started, with the place of the body or the joint.
-    fn obstacle(&self, error: SetupError) -> ((usize, usize), String) {
-        match error {
+    fn obstacle(&self, error: &SetupError, is_nearest: bool) -> (Option<Place>, String) {
+        match *error {
             SetupError::OffConstraint { joint, by } => {
-                let message = if self.run.nearest {
+                let message = if is_nearest {
                     format!(
                         "no places next to these were found where the joints are closed: this one stays open by {by:e} ({GAP}); give places nearer to such, or other joints"
                     )
@@ -272,7 +271,7 @@ impl System {
                 (self.of_joint(joint), message)
             }
             SetupError::OffVelocity { joint, by } => {
-                let message = if self.run.nearest {
+                let message = if is_nearest {
                     format!(
                         "no velocities next to these were found that keep this joint closed: they open it by {by:e} ({GAP}, per second); give others"
                     )
@@ -299,33 +298,33 @@ impl System {
             SetupError::BodyParameter { body, field, cause } if body < self.bodies.len() => {
                 let name = &self.bodies[body].name;
                 let message = format!("parameter `{field}` of the body `{name}` {cause}; give it another value");
-                (self.places.bodies[body], message)
+                (self.places.bodies.get(body).copied(), message)
             }
             SetupError::SingularKinetic { determinant, body } => {
                 // A single body has no number.
                 let body = body.or_else(|| (self.bodies.len() == 1).then_some(0));
                 let known = body.and_then(|body| self.without_velocity(body, determinant));
-                known.unwrap_or_else(|| (self.places.pace, error.to_string()))
+                known.unwrap_or_else(|| (None, error.to_string()))
             }
-            error => (self.places.pace, error.to_string()),
+            _ => (None, error.to_string()),
         }
     }
 
     /// The reason why the velocity of a body doesn't follow from its momentum, with its place.
-    fn without_velocity(&self, body: usize, determinant: f64) -> Option<((usize, usize), String)> {
+    fn without_velocity(&self, body: usize, determinant: f64) -> Option<(Option<Place>, String)> {
         let SystemBody { name, J, .. } = self.bodies.get(body)?;
         if J.is_none() {
             let message = format!(
                 "the joints of `{name}` let this point mass turn on the spot, and nothing determines how fast: give it `moments`, or a joint that holds its attitude, as a `weld` or a `pin` beside it"
             );
-            return Some((self.places.bodies[body], message));
+            return Some((self.places.bodies.get(body).copied(), message));
         }
         let joint = self.joints.iter().position(|joint| joint.bodies.contains(&Some(body)))?;
         determinant.is_nan().then(|| (self.of_joint(joint), FAR.to_owned()))
     }
 
     /// The reason why a step fails, with its place.
-    fn end_of_steps(&self, cause: &StepError) -> ((usize, usize), String) {
+    fn end_of_steps(&self, cause: &StepError) -> (Option<Place>, String) {
         match *cause {
             StepError::SingularJoint { joint, pivot } if pivot.is_nan() => (self.of_joint(joint), FAR.to_owned()),
             StepError::SingularJoint { joint, pivot } => {
@@ -344,9 +343,9 @@ impl System {
                 let why = format!(
                     "no increment of the body `{name}` that continues the identity: it would turn by {turn:.2e} rad, and {part}; take a smaller `step`"
                 );
-                (self.places.bodies[body], why)
+                (self.places.bodies.get(body).copied(), why)
             }
-            _ => (self.places.pace, told(cause)),
+            _ => (None, told(cause)),
         }
     }
 }

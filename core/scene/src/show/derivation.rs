@@ -6,12 +6,12 @@ use liestep::mechanics::Effect;
 use liestep_late::{Declaration, LateError};
 
 use crate::file::body::{Distribution, Kinetic};
-use crate::file::effects::EFFECTS;
+use crate::file::effects::{EFFECTS, EffectEntry};
 use crate::file::joint::{Joint, Kind};
-use crate::file::kinds::{Content, Scene, of_parts};
+use crate::file::kinds::Scene;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
-use crate::run::bodies::{Coil, Cord, HeavyBody};
+use crate::run::bodies::{Coil, Cord, HeavyBody, Tide};
 use crate::run::model::Model;
 
 /// A term's derivation, and the text of its declaration.
@@ -96,7 +96,7 @@ impl Scene {
     /// The derivations of the scene's terms, and of several bodies the constraints of their joints.
     #[must_use]
     pub fn derivation(&self) -> String {
-        of_parts!(self, parts => parts.derivation())
+        self.file.system.as_ref().map_or_else(|| self.file.derivation(), |system| system.derivation(&self.file))
     }
 
     /// The derivation of the sum of all terms, in this form. In C it is followed by the scene's numbers, if its steps are equal
@@ -107,7 +107,7 @@ impl Scene {
     /// The sum can't be written in this form, see [`LateError::Step`].
     #[must_use]
     pub fn written(&self, form: Form) -> Option<Result<String, LateError>> {
-        if let Content::Body(file) = &self.content { Some(file.written(form)) } else { None }
+        self.file.system.is_none().then(|| self.file.written(form))
     }
 }
 
@@ -175,7 +175,7 @@ fn constraints(kind: Kind) -> &'static str {
 
 impl System {
     /// The derivation of a body, the terms of springs and of joints, and the constraints of joints.
-    fn derivation(&self) -> String {
+    fn derivation(&self, file: &SceneFile) -> String {
         let gravity = if self.gravity.is_some() { "" } else { "without gravity, g = 0\n" };
         let has = |is_long: bool| self.springs.iter().any(|spring| (spring.of.length != 0.0) == is_long);
         let springs = if has(true) { Coil::DERIVATION } else { "" };
@@ -194,8 +194,12 @@ impl System {
         let balls = if any(&|joint| joint.kind.has_one_point()) { BALLS } else { "" };
         let kinds = Kind::ALL.into_iter().filter(|kind| any(&|joint| joint.kind == *kind)).map(constraints);
         let kinds: String = kinds.collect();
-        let used = EFFECTS.iter().filter(|one| self.effects().any(|(_, effect)| effect.key == one.key));
-        let effects: String = used.map(|effect| effect.derived.0).collect();
-        format!("{}{gravity}{effects}{springs}{cords}{terms}{balls}{kinds}", HeavyBody::DERIVATION)
+        let is_used = |one: &&EffectEntry| {
+            let mut used = self.effects().map(|(_, effect)| effect).chain(file.effects().map(|(effect, _)| effect));
+            used.any(|effect| effect.key == one.key)
+        };
+        let effects: String = EFFECTS.iter().filter(is_used).map(|effect| effect.derived.0).collect();
+        let tide = file.gravity_gradient.map_or("", |_| Tide::DERIVATION);
+        format!("{}{gravity}{tide}{effects}{springs}{cords}{terms}{balls}{kinds}", HeavyBody::DERIVATION)
     }
 }

@@ -9,13 +9,10 @@ use liestep_plot::{
 };
 use nalgebra::Vector3;
 
-use crate::file::common::Parts as _;
-use crate::file::group::Group;
-use crate::file::kinds::{Scene, of_parts};
-use crate::file::picture::{Curve, Plane, SpherePicture, Trace};
-use crate::file::sample::Sample;
+use crate::file::kinds::Scene;
+use crate::file::picture::{Curve, Picture, Plane, Trace};
+use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
-use crate::file::system::System;
 use crate::run::make::Run;
 
 /// Colours of bodies and of a vector's components, which further ones repeat.
@@ -31,62 +28,59 @@ impl Scene {
     pub fn picture(&self, run: &Run) -> PlotResult<String> {
         // A step that was chosen for an accuracy has more digits than are useful.
         let step = format!("{:.4e}", run.step()).parse().unwrap_or(run.step());
-        let subtitle = format!("{}, h = {step} s{}", of_parts!(self, parts => parts.sum()), run.average);
-        of_parts!(self, parts => parts.drawn(run, &subtitle))
+        let subtitle = format!("{}, h = {step} s{}", self.file.sum(), run.average);
+        self.file.drawn(run, &subtitle)
     }
 }
 
 impl SceneFile {
     fn drawn(&self, run: &Run, subtitle: &str) -> PlotResult<String> {
         let (picture, samples) = (&self.picture, run.samples());
-        let curve = |curve: &Curve, area: &Area<'_>| curve.draw(area, samples, (&self.group, &picture.axis.0));
-        if !self.group.is_rotation() {
-            return render((1200, 640), |area| {
-                let (header, body) = area.split_vertically(px(64));
-                heading(&header, &self.title, subtitle)?;
-                let places = body.split_evenly((picture.panels.len().max(1), 1));
-                places.iter().zip(&picture.panels).try_for_each(|(place, panel)| curve(panel, place))
-            });
+        let names: Vec<_> = self.system.iter().flat_map(|system| system.names()).zip(colours()).collect();
+        let default: &[Curve] = match &self.system {
+            Some(_) => &[Curve::Turns, Curve::EnergyError],
+            None if self.group.is_rotation() => &[Curve::Rates, Curve::Momentum, Curve::Energy],
+            None => &[Curve::Attitude, Curve::Rates, Curve::Energy],
+        };
+        let curves = picture.panels.as_deref().unwrap_or(default);
+        render((1200, 640), |area| {
+            let (header, body) = area.split_vertically(px(if names.is_empty() { 64 } else { 88 }));
+            heading(&header, &self.title, subtitle)?;
+            legend(&header, (16, 74), &names)?;
+            let panels = if self.group.is_rotation() {
+                let (left, right) = body.split_horizontally(px(520));
+                if self.system.is_some() {
+                    picture.draw_ways(&left, samples)
+                } else {
+                    picture.draw_path(&left, samples)
+                }?;
+                right
+            } else {
+                body
+            };
+            let places = panels.split_evenly((curves.len().max(1), 1));
+            places.iter().zip(curves).try_for_each(|(place, curve)| curve.draw(place, samples, self))
+        })
+    }
+
+    /// The places of the momentum in space among the numbers of a sample, of several bodies that of the angular momentum.
+    fn in_space(&self) -> Range<usize> {
+        match &self.system {
+            Some(system) => system.joint_columns() - 4..system.joint_columns() - 1,
+            None => self.group.in_space(),
         }
-        let path = |area: &Area<'_>| picture.draw_path(area, samples);
-        draw((&self.title, subtitle), &[], path, &picture.panels, curve)
     }
 }
 
-impl System {
-    fn drawn(&self, run: &Run, subtitle: &str) -> PlotResult<String> {
-        let samples = run.samples();
-        let Some(start) = samples.first() else { return Err("a run has a state".into()) };
-        let ([across, up], axes) = match self.picture.plane.unwrap_or_else(|| plane_of(samples)) {
-            Plane::Xy => (["x, m", "y, m"], [0, 1]),
-            Plane::Xz => (["x, m", "z, m"], [0, 2]),
-            Plane::Yz => (["y, m", "z, m"], [1, 2]),
-        };
-        let names: Vec<_> = self.names().zip(BODY_COLOURS.into_iter().cycle()).collect();
-        let of_bodies = |point: &dyn Fn(&Sample, usize) -> (f64, f64)| -> Vec<Line> {
-            let points = |body| samples.iter().map(|sample| point(sample, body)).collect();
-            let bodies = names.iter().enumerate();
-            bodies.map(|(body, (_, colour))| Line { colour: *colour, width: 3, points: points(body) }).collect()
-        };
-        let place = |sample: &Sample, body: usize| {
-            let position = sample.bodies[body].position;
-            (position[axes[0]], position[axes[1]])
-        };
-        let turn = |sample: &Sample, body: usize| {
-            let [now, before] = [sample, start].map(|sample| sample.bodies[body].attitude);
-            let cosine = ((before.as_matrix().transpose() * now.as_matrix()).trace() - 1.0) / 2.0;
-            (sample.time, cosine.clamp(-1.0, 1.0).acos().to_degrees())
-        };
-        let path = |area: &Area<'_>| {
-            let (title, lines) = ("Ways of the centres of mass", of_bodies(&place));
-            Panel { title, across, up, vertical: Vertical::Linear, function: false, lines }.draw(area)
-        };
-        let turns = Panel::over_time("Turned from the start by", "degrees", Vertical::Linear, of_bodies(&turn));
-        let energy = over_time("Energy: how far from its start", "J", Vertical::Logarithmic, samples, &|sample| {
-            (sample.energy - start.energy).abs()
-        });
-        draw((&self.title, subtitle), &names, path, &[turns, energy], Panel::draw)
-    }
+fn colours() -> impl Iterator<Item = Colour> {
+    BODY_COLOURS.into_iter().cycle()
+}
+
+/// The ways of bodies, by the coordinates of each in a sample.
+fn of_bodies(samples: &[Sample], point: &dyn Fn(&Sample, usize) -> (f64, f64)) -> Vec<Line> {
+    let points = |body| samples.iter().map(|sample| point(sample, body)).collect();
+    let bodies = samples.first().map_or(0, |start| start.bodies.len());
+    (0..bodies).zip(colours()).map(|(body, colour)| Line { colour, width: 3, points: points(body) }).collect()
 }
 
 /// The plane across the direction in which positions vary the least. Among equal directions y comes first, then x.
@@ -106,28 +100,18 @@ fn plane_of(samples: &[Sample]) -> Plane {
     }
 }
 
-/// A heading with a legend of the bodies, a path on the left, and curves below each other on the right.
-fn draw<C>(
-    (title, subtitle): (&str, &str),
-    bodies: &[(&str, Colour)],
-    path: impl Fn(&Area<'_>) -> PlotResult,
-    curves: &[C],
-    curve: impl Fn(&C, &Area<'_>) -> PlotResult,
-) -> PlotResult<String> {
-    render((1200, 640), |area| {
-        let (header, body) = area.split_vertically(px(if bodies.is_empty() { 64 } else { 88 }));
-        heading(&header, title, subtitle)?;
-        legend(&header, (16, 74), bodies)?;
-        let (left, right) = body.split_horizontally(px(520));
-        path(&left)?;
-        for (place, which) in right.split_evenly((curves.len().max(1), 1)).iter().zip(curves) {
-            curve(which, place)?;
-        }
-        Ok(())
-    })
-}
+impl Picture {
+    fn draw_ways(&self, area: &Area<'_>, samples: &[Sample]) -> PlotResult {
+        let ([across, up], axes) = match self.plane.unwrap_or_else(|| plane_of(samples)) {
+            Plane::Xy => (["x, m", "y, m"], [0, 1]),
+            Plane::Xz => (["x, m", "z, m"], [0, 2]),
+            Plane::Yz => (["y, m", "z, m"], [1, 2]),
+        };
+        let lines = of_bodies(samples, &|sample, body| axes.map(|axis| sample.bodies[body].position[axis]).into());
+        let title = "Ways of the centres of mass";
+        Panel { title, across, up, vertical: Vertical::Linear, function: false, lines }.draw(area)
+    }
 
-impl SpherePicture {
     fn draw_path(&self, area: &Area<'_>, samples: &[Sample]) -> PlotResult {
         let axis = self.axis.0;
         let point = |s: &Sample| match self.path {
@@ -149,7 +133,8 @@ impl SpherePicture {
 const MOST_NAMES: usize = 8;
 
 impl Curve {
-    fn draw(self, area: &Area<'_>, samples: &[Sample], (group, axis): (&Group, &Vector3<f64>)) -> PlotResult {
+    fn draw(self, area: &Area<'_>, samples: &[Sample], file: &SceneFile) -> PlotResult {
+        let (group, axis, in_space) = (&file.group, file.picture.axis.0, file.in_space());
         let Some(start) = samples.first() else {
             return Ok(());
         };
@@ -157,21 +142,25 @@ impl Curve {
             over_time(title, up, vertical, samples, height).draw(area)
         };
         let several = |title, up, part: Range<usize>, names: &[&str]| {
-            let colours = || BODY_COLOURS.into_iter().cycle();
             let lines = part.clone().zip(colours());
             let lines = lines.map(|(place, colour)| line(samples, colour, &|s| s.numbers[place])).collect();
             Panel::over_time(title, up, Vertical::Linear, lines).draw(area)?;
             let entries: Vec<_> = names.iter().copied().zip(colours()).take(MOST_NAMES).collect();
             legend(area, (500, 12), &entries)
         };
+        let each = |title, up, height: &dyn Fn(&BodySample, &BodySample) -> f64| {
+            let lines = of_bodies(samples, &|s, body| (s.time, height(&s.bodies[body], &start.bodies[body])));
+            Panel::over_time(title, up, Vertical::Linear, lines).draw(area)
+        };
         let away = |s: &Sample| {
-            let pairs = s.numbers[group.in_space()].iter().zip(&start.numbers[group.in_space()]);
+            let pairs = s.numbers[in_space.clone()].iter().zip(&start.numbers[in_space.clone()]);
             pairs.map(|(now, start)| (now - start).powi(2)).sum::<f64>().sqrt()
         };
         let along = |s: &Sample| (s.angular_momentum - start.angular_momentum).z.abs();
-        let tilt = |s: &Sample| match s.bodies.first() {
-            Some(body) => (body.matrix() * axis).angle(&Vector3::z()).to_degrees(),
-            None => f64::NAN,
+        let tilt = |body: &BodySample, _: &BodySample| (body.matrix() * axis).angle(&Vector3::z()).to_degrees();
+        let turned = |now: &BodySample, before: &BodySample| {
+            let cosine = ((before.matrix().transpose() * now.matrix()).trace() - 1.0) / 2.0;
+            cosine.clamp(-1.0, 1.0).acos().to_degrees()
         };
         let is_body = group.is_rotation();
         let (unit, rate) = if is_body { ("kg m²/s", "rad/s") } else { ("", "") };
@@ -186,19 +175,21 @@ impl Curve {
                 let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
                 several("Attitude", "", group.attitude(), &names)
             }
+            Self::Rates if file.system.is_some() => each("Angular velocities", rate, &|body, _| body.velocity.norm()),
             Self::Rates => several(
                 titled("Angular velocity in the body", "Velocity of the body"),
                 rate,
                 group.velocity(),
                 components,
             ),
-            Self::Tilt => one("Tilt of the axis from e₃", "degrees", Vertical::Linear, &tilt),
+            Self::Tilt => each("Tilt of the axis from e₃", "degrees", &tilt),
+            Self::Turns => each("Turned from the start by", "degrees", &turned),
             Self::Energy => one("Energy", joules, Vertical::Linear, &|s| s.energy),
             Self::EnergyError => one("Energy: how far from its start", joules, Vertical::Logarithmic, &|s| {
                 (s.energy - start.energy).abs()
             }),
             Self::Momentum => {
-                several(titled("Angular momentum in space", "Momentum in space"), unit, group.in_space(), components)
+                several(titled("Angular momentum in space", "Momentum in space"), unit, in_space, components)
             }
             Self::VerticalMomentumError => {
                 one("Angular momentum along e₃: how far from its start", unit, Vertical::Logarithmic, &along)

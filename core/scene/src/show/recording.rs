@@ -6,9 +6,9 @@ use std::path::Path;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::file::column::Column;
-use crate::file::common::Parts as _;
-use crate::file::kinds::{Content, Scene, of_parts};
+use crate::file::kinds::Scene;
 use crate::file::mistake::Mistake;
+use crate::file::part::SystemBody;
 use crate::file::quantity::short;
 use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
@@ -129,72 +129,38 @@ impl Recording {
 
     fn of(scene: &SceneFile, run: &Run) -> Self {
         let samples = run.samples();
-        let collect = |value: &dyn Fn(&Sample) -> f64| samples.iter().map(value).collect::<Vec<_>>();
-        // None on a group without a body.
-        let attitudes: Vec<_> = samples.iter().filter_map(|sample| sample.bodies.first()).map(attitude).collect();
-        let (axis, arm) = (scene.picture.axis.0, scene.gravity.map(|gravity| gravity.rho.value));
-        let energy = energy_error(&collect(&|sample| sample.energy));
-        let charts = if scene.group.is_rotation() {
-            let momentum: Vec<_> = samples.iter().map(|sample| sample.angular_momentum).collect();
-            let rates = rates([0, 1, 2].map(|k| collect(&|sample| sample.bodies[0].velocity[k])));
-            vec![tilt(&attitudes, &axis), energy, momentum_error(&momentum), rates]
-        } else {
-            let columns = Column::of_group(&scene.group);
-            let chart = |title, key: &str| {
-                let column = columns.iter().find(|column| column.key() == key);
-                let names = column
-                    .iter()
-                    .flat_map(|column| column.names().filter_map(|name| Some((name, column.place(name)?))));
-                let lines = names.map(|(name, place)| (name.to_owned(), collect(&|sample| sample.numbers[place])));
-                Chart::linear(title, "", lines.collect())
-            };
-            vec![
-                chart("Attitude", "attitude"),
-                energy,
-                chart("Velocity of the body", "velocity"),
-                chart("Momentum in space", "spatial-momentum"),
-            ]
+        let figures = match &scene.system {
+            Some(system) => figures_of(system),
+            None => {
+                let arm = scene.gravity.map(|gravity| gravity.rho.value);
+                vec![(String::new(), Figure::of(&scene.inertia().unwrap_or_else(Matrix3::identity), arm))]
+            }
         };
-        let figure = Figure::of(&scene.inertia().unwrap_or_else(Matrix3::identity), arm);
-        Self {
-            title: String::new(),
-            about: String::new(),
-            axis,
-            bodies: if attitudes.is_empty() { Vec::new() } else { vec![single(figure, attitudes)] },
-            rods: Vec::new(),
-            times: collect(&|sample| sample.time),
-            charts,
-            events: Vec::new(),
-            model: Model::of(scene)
-                .ok()
-                .filter(|_| scene.group.is_rotation() && !scene.event.iter().any(|one| one.stops)),
-        }
-    }
-
-    fn of_system(system: &System, run: &Run) -> Self {
-        let samples = run.samples();
-        let positions = |body: usize| samples.iter().map(|sample| sample.bodies[body].position).collect::<Vec<_>>();
-        let attitudes = |body: usize| samples.iter().map(|sample| attitude(&sample.bodies[body])).collect::<Vec<_>>();
-        // A point mass is a ball that is seen beside the arms of joints.
-        let arms = system.joints.iter().flat_map(|joint| joint.of.at).map(|at| at.norm());
-        let point = 0.08 * arms.fold(0.0, f64::max).max(1e-3);
-        let bodies = system.bodies.iter().enumerate().map(|(number, body)| {
-            let by_mass = body.J.as_ref().map(|J| J.as_matrix() / body.m);
-            let figure = Figure::among_several(body.shape.as_ref(), by_mass, point);
-            ShownBody { name: body.name.clone(), figure, attitudes: attitudes(number), positions: positions(number) }
-        });
+        // None on a group without a body.
+        let shown = samples.first().map_or(0, |sample| sample.bodies.len());
+        let body = |(number, (name, figure)): (usize, (String, Figure))| {
+            let attitudes = samples.iter().map(|sample| attitude(&sample.bodies[number])).collect();
+            let places = samples.iter().filter(|_| scene.system.is_some());
+            ShownBody { name, figure, attitudes, positions: places.map(|one| one.bodies[number].position).collect() }
+        };
+        let bodies: Vec<_> = figures.into_iter().take(shown).enumerate().map(body).collect();
         let rod = |body: Option<usize>, at: Vector3<f64>| Some((body?, at)).filter(|(_, at)| at.norm() > 0.0);
-        let rods = system.joints.iter().flat_map(|joint| [0, 1].map(|side| rod(joint.bodies[side], joint.of.at[side])));
+        let joints = scene.system.iter().flat_map(|system| &system.joints);
+        let rods = joints.flat_map(|joint| [0, 1].map(|side| rod(joint.bodies[side], joint.of.at[side])));
+        let has_script = scene.group.is_rotation() && !scene.event.iter().any(|one| one.stops);
         Self {
             title: String::new(),
             about: String::new(),
-            axis: Vector3::z(),
-            bodies: bodies.collect(),
+            axis: scene.picture.axis.0,
             rods: rods.flatten().collect(),
             times: samples.iter().map(|sample| sample.time).collect(),
-            charts: charts_of_system(system, samples),
+            charts: match &scene.system {
+                Some(system) => charts_of_system(system, &scene.view().columns(), samples),
+                None => charts(scene, &bodies, samples),
+            },
+            bodies,
             events: Vec::new(),
-            model: None,
+            model: Model::of(scene).ok().filter(|_| has_script),
         }
     }
 
@@ -208,6 +174,46 @@ impl Recording {
     }
 }
 
+/// The names and the shapes of several bodies.
+fn figures_of(system: &System) -> Vec<(String, Figure)> {
+    // A point mass is a ball that is seen beside the arms of joints.
+    let arms = system.joints.iter().flat_map(|joint| joint.of.at).map(|at| at.norm());
+    let point = 0.08 * arms.fold(0.0, f64::max).max(1e-3);
+    let figure = |body: &SystemBody| {
+        let by_mass = body.J.as_ref().map(|J| J.as_matrix() / body.m);
+        (body.name.clone(), Figure::among_several(body.shape.as_ref(), by_mass, point))
+    };
+    system.bodies.iter().map(figure).collect()
+}
+
+/// The tilt of a body's axis, energy, momentum and rates; on a group without a body attitude, velocity and momentum.
+fn charts(scene: &SceneFile, bodies: &[ShownBody], samples: &[Sample]) -> Vec<Chart> {
+    let collect = |value: &dyn Fn(&Sample) -> f64| samples.iter().map(value).collect::<Vec<_>>();
+    let energy = energy_error(&collect(&|sample| sample.energy));
+    if let Some(body) = bodies.first() {
+        let momentum: Vec<_> = samples.iter().map(|sample| sample.angular_momentum).collect();
+        let rates = rates([0, 1, 2].map(|k| collect(&|sample| sample.bodies[0].velocity[k])));
+        return vec![tilt(&body.attitudes, &scene.picture.axis.0), energy, momentum_error(&momentum), rates];
+    }
+    let columns = scene.view().columns();
+    let chart = |title, key| Chart::linear(title, "", lines_of(&columns, key, samples, 1.0));
+    vec![
+        chart("Attitude", "attitude"),
+        energy,
+        chart("Velocity of the body", "velocity"),
+        chart("Momentum in space", "spatial-momentum"),
+    ]
+}
+
+/// The numbers of a column, with their names, times a factor.
+fn lines_of(columns: &[Column], key: &str, samples: &[Sample], factor: f64) -> Vec<(String, Vec<f64>)> {
+    let column = columns.iter().find(|column| column.key() == key);
+    let places =
+        column.into_iter().flat_map(|column| column.names().filter_map(|name| Some((name, column.place(name)?))));
+    let values = |place: usize| samples.iter().map(|sample| sample.numbers[place] * factor).collect();
+    places.map(|(name, place)| (name.to_owned(), values(place))).collect()
+}
+
 /// The events of a run, s, with their names among these.
 fn named_events<'n>(run: &Run, names: impl Iterator<Item = &'n str>) -> Vec<(f64, String)> {
     let names: Vec<_> = names.collect();
@@ -219,13 +225,10 @@ fn named_events<'n>(run: &Run, names: impl Iterator<Item = &'n str>) -> Vec<(f64
 const MOST_CURVES: usize = 8;
 
 /// Angles and shifts of joints, or the turns of bodies without joints, the energy, and how far joints are open.
-fn charts_of_system(system: &System, samples: &[Sample]) -> Vec<Chart> {
-    let columns = system.all_columns();
+fn charts_of_system(system: &System, columns: &[Column], samples: &[Sample]) -> Vec<Chart> {
     let of_joints = |key: &str, title, unit, factor: f64| {
-        let column = columns.iter().find(|column| column.key() == key)?;
-        let places = column.names().filter_map(|name| Some((name.to_owned(), column.place(name)?)));
-        let values = |place: usize| samples.iter().map(|sample| sample.numbers[place] * factor).collect();
-        let lines: Vec<_> = places.take(MOST_CURVES).map(|(name, place)| (name, values(place))).collect();
+        let mut lines = lines_of(columns, key, samples, factor);
+        lines.truncate(MOST_CURVES);
         (!lines.is_empty()).then(|| Chart::linear(title, unit, lines))
     };
     let joints = [
@@ -261,14 +264,9 @@ impl Scene {
     /// The page of a run of this scene, see [`Recording::page`].
     #[must_use]
     pub fn page(&self, run: &Run) -> String {
-        let recording = match &self.content {
-            Content::Body(file) => Recording::of(file, run),
-            Content::System(system) => Recording::of_system(system, run),
-        };
-        let sum = of_parts!(self, parts => parts.sum());
-        let about = format!("{sum}, {} steps of {} s{}", run.steps(), short(run.step()), run.average);
+        let about = format!("{}, {} steps of {} s{}", self.file.sum(), run.steps(), short(run.step()), run.average);
         let events = named_events(run, self.events());
-        Recording { title: self.title().to_owned(), about, events, ..recording }.page()
+        Recording { title: self.title().to_owned(), about, events, ..Recording::of(&self.file, run) }.page()
     }
 }
 

@@ -193,10 +193,11 @@ impl MultibodyStepper {
             let mut next = core::mem::take(&mut work.before);
             next.clear();
             next.extend_from_slice(state);
+            let impulses = || force.iter().map(|force| force * (self.h * 0.5));
             let made = self
-                .push(&mut next, work, force)
+                .push_in(&mut next, work, impulses())
                 .and_then(|()| self.step_in(&mut next, work, None, false))
-                .and_then(|report| self.push(&mut next, work, force).map(|()| report));
+                .and_then(|report| self.push_in(&mut next, work, impulses()).map(|()| report));
             if made.is_ok() {
                 state.copy_from_slice(&next);
             }
@@ -205,14 +206,33 @@ impl MultibodyStepper {
         })
     }
 
-    /// Adds half of a step's impulse of these forces.
-    fn push(&self, state: &mut [f64], work: &mut Workspace, force: &[Vector6<f64>]) -> Result<(), StepError> {
+    /// Adds an impulse to the momentum of each body, `(N m s, N s)`, in its own axes and in those of space. Joints take up the part
+    /// that would open them; on an error the state is unchanged.
+    ///
+    /// # Errors
+    ///
+    /// [`StepError::NonFinite`] for impulses that aren't finite or aren't those of all bodies; [`StepError::SingularJoint`].
+    pub fn push(&self, state: &mut [f64], impulses: &[Vector6<f64>]) -> Result<(), StepError> {
+        self.check(state)?;
+        if impulses.len() != self.bodies() {
+            return Err(StepError::NonFinite { what: "impulse" });
+        }
+        with_workspace(|work| self.push_in(state, work, impulses.iter().copied()))
+    }
+
+    /// Adds an impulse to the momentum of each body, but for the part that the joints take up.
+    fn push_in(
+        &self,
+        state: &mut [f64],
+        work: &mut Workspace,
+        impulses: impl Iterator<Item = Vector6<f64>>,
+    ) -> Result<(), StepError> {
         work.fit(self.bodies(), self.tree.couplings.len());
         work.equations.fit(self.joints(), &self.tree);
-        for (body, force) in force.iter().enumerate() {
+        for (body, impulse) in impulses.enumerate() {
             work.next[body] = body_at(state, body);
             work.momenta[body] = self.offsets.momentum(state, body);
-            work.a[body] = force * (self.h * 0.5);
+            work.a[body] = impulse;
         }
         self.project(work).map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
         if !is_finite(&work.momenta) {

@@ -9,11 +9,10 @@ mod variables;
 
 use liestep_late::{c, prefix};
 
-use crate::file::kinds::{Content, Scene, of_parts};
+use crate::file::kinds::Scene;
 use crate::file::mistake::Mistake;
 use crate::run::make::Stop;
 use crate::run::model::Model;
-use crate::run::moving::Moving as _;
 
 pub use archive::archive;
 
@@ -52,11 +51,8 @@ impl Scene {
     /// A [`Mistake`] of the kind [`Run`](crate::Kind::Run) where the scene's step isn't one of equal steps by constant
     /// numbers, and for several bodies.
     pub fn fmu(&self, name: &str, fmi: Fmi) -> Result<Fmu, Mistake> {
-        let wrong =
-            |why: String| of_parts!(self, parts => parts.mistake(Stop::Other(format!("the scene is no unit: {why}"))));
-        let Content::Body(file) = &self.content else {
-            return Err(wrong("it has several bodies, and a unit has one so far".to_owned()));
-        };
+        let file = &self.file;
+        let wrong = |why: String| file.mistake(Stop::Other(format!("the scene is no unit: {why}")));
         let model = Model::of(file).map_err(wrong)?;
         let name = identifier(name);
         let step = c(model.declaration).map_err(|error| wrong(error.to_string()))?;

@@ -1,0 +1,127 @@
+//! The numbers of one body's terms as functions of time, of its wheels and of its laws.
+
+use std::cell::RefCell;
+
+use liestep::mechanics::Inertia;
+use liestep::motion::{Layout, Propagator as _, StepReport};
+use liestep::{SetupError, StepError};
+use liestep_late::{Course, Declaration};
+
+use crate::file::control::locked;
+use crate::file::scene::SceneFile;
+use crate::run::data::{LibraryBody, Whole, numbers};
+use crate::run::devices::{Held, Mechanism};
+
+/// The terms of a file, whose numbers are found at any time.
+pub(crate) struct Parameters {
+    file: RefCell<SceneFile>,
+    /// The inertia without that of the wheels about their axes, and with wheels that are locked to the body.
+    inertias: [Inertia; 2],
+    body: Option<LibraryBody>,
+    sum: &'static Declaration,
+}
+
+impl Parameters {
+    pub(crate) fn of(file: SceneFile, J: Inertia, sum: &'static Declaration) -> Self {
+        let (inertias, body) = ([J, locked(&J, &file.wheel, 0)], LibraryBody::of(&file, J));
+        Self { file: RefCell::new(file), inertias, body, sum }
+    }
+
+    /// The numbers of a step of this start and length, s, or with the length zero of a time, with further spin and torque where
+    /// the file has a rotor and a torque.
+    fn numbers(&self, [start, length]: [f64; 2], held: &Held) -> Option<Vec<f64>> {
+        let mut file = self.file.borrow_mut();
+        let is_known = file.set_over([start, length]);
+        let (rotor, torque) = (file.rotor, file.torque);
+        file.rotor.iter_mut().for_each(|rotor| rotor.spin.value += held.spin);
+        file.torque.iter_mut().for_each(|torque| torque.torque.value += held.torque);
+        let [J, locked] = &self.inertias;
+        let all = numbers(&file, [J, locked], self.body.as_ref(), start + length * 0.5);
+        (file.rotor, file.torque) = (rotor, torque);
+        self.sum.described(&all).ok().filter(|_| is_known)
+    }
+}
+
+impl Course for Parameters {
+    fn at(&self, time: f64, places: &mut [f64]) {
+        self.over([time, 0.0], places);
+    }
+
+    fn over(&self, span: [f64; 2], places: &mut [f64]) {
+        match self.numbers(span, &Held::default()) {
+            Some(now) => places.copy_from_slice(&now),
+            None => places.fill(f64::NAN),
+        }
+    }
+}
+
+/// One body, or a Lagrangian of the file's own on SO(3).
+pub(crate) struct OneBody {
+    parameters: Parameters,
+    layout: Layout,
+    /// The steppers of the stages, with the numbers of the last step.
+    stages: Vec<RefCell<Whole>>,
+}
+
+impl OneBody {
+    /// The body of these parameters, with steps of this many stages.
+    pub(crate) fn new(parameters: Parameters, whole: &Whole, stages: usize) -> Self {
+        let layout = whole.layout().clone();
+        Self { parameters, layout, stages: vec![RefCell::new(whole.clone()); stages] }
+    }
+}
+
+impl Mechanism for OneBody {
+    type Numbers = Vec<f64>;
+
+    fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    fn numbers(&self, span: [f64; 2], held: &[Held]) -> Option<Vec<f64>> {
+        let numbers = self.parameters.numbers(span, held.first()?)?;
+        numbers.iter().all(|number| number.is_finite()).then_some(numbers)
+    }
+
+    fn start(&self, numbers: &Vec<f64>, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
+        let whole = self.stages[0].borrow();
+        whole.with(numbers, whole.step_size())?.start(attitude, velocity)
+    }
+
+    fn step(
+        &self,
+        stage: usize,
+        numbers: &Vec<f64>,
+        length: f64,
+        state: &mut Vec<f64>,
+    ) -> Result<StepReport, StepError> {
+        let mut whole = self.stages[stage].borrow_mut();
+        whole.take(numbers, length).map_err(|_| StepError::NonFinite { what: "torque of a law" })?;
+        let mut next = whole.adopt(state);
+        let report = whole.step(&mut next)?;
+        *state = next.into();
+        Ok(report)
+    }
+
+    fn velocity(&self, numbers: &Vec<f64>, state: &[f64]) -> Vec<f64> {
+        self.stages[0].borrow().velocity_with(state, numbers)
+    }
+
+    fn energy(&self, numbers: &Vec<f64>, state: &[f64]) -> f64 {
+        self.stages[0].borrow().energy_with(state, numbers)
+    }
+
+    fn push(&self, _: &Vec<f64>, state: &mut [f64], impulses: &[f64]) -> Result<(), StepError> {
+        let momentum = state[self.layout.momentum()].iter_mut();
+        momentum.zip(impulses).for_each(|(momentum, impulse)| *momentum += impulse);
+        Ok(())
+    }
+
+    fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
+        self.stages[0].borrow().spatial_momentum(state, momentum);
+    }
+
+    fn defect(&self, state: &[f64]) -> f64 {
+        self.stages[0].borrow().defect(state)
+    }
+}
