@@ -83,8 +83,8 @@ fn identity(text: &str, file: &SceneFile) -> String {
     let of_wheel = |wheel: &Wheel| if let Motor::Signal(signal) = &wheel.motor { Some(signal.clone()) } else { None };
     let over_time = file.over_time.iter().filter_map(|one| one.signal().cloned());
     let signals = over_time.chain(file.wheel.iter().filter_map(of_wheel));
-    let signals: String = signals.map(|signal| format!("\n# {signal:?}")).collect();
-    format!("{values}{signals}")
+    let lines = signals.map(|signal| format!("\n# {signal:?}"));
+    core::iter::once(values.to_string()).chain(lines).collect()
 }
 
 /// The parts of a scene by which members have columns and events, or not.
@@ -156,6 +156,23 @@ fn of_columns(ensemble: &SceneEnsemble, scene: &Scene, at: &dyn Fn(&[&str]) -> R
     None
 }
 
+/// The table that the file lacks, so that nothing in it can be drawn.
+fn missing(axis: &Axis, document: &Document<'_>) -> Option<SpanMessage> {
+    let [tables @ .., _] = axis.keys.as_slice() else { return None };
+    let mut here = document.get_ref();
+    for key in tables {
+        let name = key.get_ref();
+        let Some(inner) = here.get(name.as_str()) else {
+            let message =
+                format!("the file has no `{name}`, of which something could be drawn; write the table `[{name}]`");
+            return Some((key.span(), message));
+        };
+        // A table of a list is found by its name when a value is set.
+        here = inner.get_ref().as_table()?;
+    }
+    None
+}
+
 /// The ensemble of a table; `scene` is that without draws.
 pub(crate) fn read(
     (path, text): (&Path, &str),
@@ -193,25 +210,7 @@ pub(crate) fn read(
             format!("a run has {steps} steps, so none is kept on its way; leave `every` out to keep the ends only");
         return Err(located((value.span(), message)));
     }
-    for Axis { keys, .. } in &ensemble.axes {
-        let [tables @ .., _] = keys.as_slice() else { continue };
-        // A table that the file lacks can't be added by a draw.
-        let mut here = Some(document.get_ref());
-        for key in tables {
-            let name = key.get_ref();
-            let inner = here.and_then(|table| table.get(name.as_str()));
-            // A table of a list is found by its name when a value is set.
-            if inner.is_some_and(|inner| inner.get_ref().is_array()) {
-                break;
-            }
-            if inner.is_none() {
-                let message =
-                    format!("the file has no `{name}`, of which something could be drawn; write the table `[{name}]`");
-                return Err(located((key.span(), message)));
-            }
-            here = inner.and_then(|value| value.get_ref().as_table());
-        }
-    }
+    ensemble.axes.iter().find_map(|axis| missing(axis, document)).map_or(Ok(()), Err).map_err(located)?;
     // The tables borrow the text, so it is parsed once and leaked.
     let tables = DeTable::parse(Box::leak(text.into())).map_err(|error| Mistake::of_toml(path, text, &error))?;
     let axes = &ensemble.axes;

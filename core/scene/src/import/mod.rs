@@ -20,14 +20,7 @@ use std::path::Path;
 use crate::file::mistake::Mistake;
 use parts::Parts;
 
-/// A scene that was made of a model, and the remarks about what it doesn't have.
-#[derive(Clone, Debug)]
-pub struct Import {
-    /// The text of the scene, for [`Scene::parse`](crate::Scene::parse).
-    pub text: String,
-    /// Elements of the model without a counterpart, and choices that were made.
-    pub remarks: Vec<String>,
-}
+pub use robot::Import;
 
 /// Makes a scene of a model: a file of URDF, SDF or MJCF, which the root element tells.
 ///

@@ -6,9 +6,17 @@ use std::fmt::Write as _;
 
 use nalgebra::{Isometry3, Matrix3, Vector3};
 
-use super::Import;
 use super::rigid::Distribution;
 use crate::file::quantity::short;
+
+/// A scene that was made of a model, and the remarks about what it doesn't have.
+#[derive(Clone, Debug)]
+pub struct Import {
+    /// The text of the scene, for [`Scene::parse`](crate::Scene::parse).
+    pub text: String,
+    /// Elements of the model without a counterpart, and choices that were made.
+    pub remarks: Vec<String>,
+}
 
 /// The reason why a model can't be a scene, with its line and column.
 pub(super) type Unsuitable = ((usize, usize), String);
@@ -135,6 +143,9 @@ struct Arm {
     own: Isometry3<f64>,
 }
 
+/// The group of the child of a joint that closes a loop, and the joint.
+type Closing = (usize, Arm);
+
 /// The group of a link, and the link's frame in that of the group.
 type Place = (usize, Isometry3<f64>);
 
@@ -221,7 +232,7 @@ impl Robot {
 
     /// The groups of fixed links, from the root on: each after its parent; and the joints that close loops, each with the group
     /// of its child.
-    fn groups(&self) -> Result<(Vec<Group>, Vec<(usize, Arm)>), Unsuitable> {
+    fn groups(&self) -> Result<(Vec<Group>, Vec<Closing>), Unsuitable> {
         let mut numbers = HashMap::new();
         for (number, link) in self.links.iter().enumerate() {
             if numbers.insert(link.name.as_str(), number).is_some() {

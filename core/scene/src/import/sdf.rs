@@ -196,14 +196,10 @@ impl<'a, 'd> Reader<'a, 'd> {
         self.frames.insert(full.clone(), Frame { base, pose, attached: None });
         for element in elements(node) {
             match element.tag_name().name() {
-                "pose" | "inertial" | "self_collide" | "enable_wind" | "must_be_base_link" => (),
                 "gravity" if element.text().is_some_and(|text| matches!(text.trim(), "false" | "0")) => {
                     self.robot.remarks.push(format!("link {full}: it has weight here, as all bodies have"));
                 }
-                "gravity" => (),
-                "kinematic" | "velocity_decay" | "sensor" | "light" | "visual" | "collision" => {
-                    *self.left_out.entry(element.tag_name().name()).or_default() += 1;
-                }
+                "gravity" | "pose" | "inertial" | "self_collide" | "enable_wind" | "must_be_base_link" => (),
                 tag => *self.left_out.entry(tag).or_default() += 1,
             }
         }

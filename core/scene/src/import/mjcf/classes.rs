@@ -9,10 +9,18 @@ use super::super::xml::{Read, elements, place};
 /// The class of elements without another.
 const MAIN: &str = "main";
 
-/// Classes by their names, each with its elements by their tags and with the class around it.
+/// Classes by their names.
 #[derive(Default)]
 pub(super) struct Classes<'a, 'd> {
-    classes: HashMap<String, (HashMap<String, Vec<Node<'a, 'd>>>, Option<String>)>,
+    classes: HashMap<String, Class<'a, 'd>>,
+}
+
+/// The elements of a class by their tags.
+#[derive(Default)]
+struct Class<'a, 'd> {
+    elements: HashMap<&'a str, Vec<Node<'a, 'd>>>,
+    /// The class around it.
+    around: Option<String>,
 }
 
 impl<'a, 'd> Classes<'a, 'd> {
@@ -24,9 +32,9 @@ impl<'a, 'd> Classes<'a, 'd> {
             (None, Some(_)) => return Err((place(node), "a `default` inside of another has a `class`".to_owned())),
         };
         let class = self.classes.entry(name.to_owned()).or_default();
-        class.1 = around.map(str::to_owned);
+        class.around = around.map(str::to_owned);
         for element in elements(node).filter(|element| !element.has_tag_name("default")) {
-            class.0.entry(element.tag_name().name().to_owned()).or_default().push(element);
+            class.elements.entry(element.tag_name().name()).or_default().push(element);
         }
         let name = name.to_owned();
         elements(node)
@@ -45,9 +53,9 @@ impl<'a, 'd> Classes<'a, 'd> {
         let (mut all, mut next) = (vec![node], Some(named.unwrap_or(MAIN)));
         // A class stands inside of another one, so that the way out ends.
         for _ in 0..=self.classes.len() {
-            let Some((elements, outer)) = next.and_then(|name| self.classes.get(name)) else { break };
+            let Some(Class { elements, around }) = next.and_then(|name| self.classes.get(name)) else { break };
             all.extend(elements.get(node.tag_name().name()).into_iter().flatten().rev());
-            next = outer.as_deref();
+            next = around.as_deref();
         }
         Ok(Element { all })
     }

@@ -53,7 +53,7 @@ pub(super) fn sequence<'a, 'd>(
             damping > 0.0 || friction > 0.0 || stiffness > 0.0 || has_limits
         });
         let first = joints.swap_remove(0);
-        let equal = joints.iter().all(|joint| joint.damping == first.damping);
+        let equal = joints.iter().all(|joint| joint.damping.to_bits() == first.damping.to_bits());
         let damping = if equal && connection == Connection::Ball { first.damping } else { 0.0 };
         if has {
             let count = joints.len() + 1;

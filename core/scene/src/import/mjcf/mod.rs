@@ -75,7 +75,6 @@ pub(super) fn read(root: &Node<'_, '_>) -> Read<Robot> {
     }
     for element in elements(root) {
         match element.tag_name().name() {
-            "compiler" | "default" => (),
             "option" => reader.option(&element)?,
             "worldbody" => {
                 let around = Around { class: element.attribute("childclass"), frame: Isometry3::identity() };
@@ -85,12 +84,12 @@ pub(super) fn read(root: &Node<'_, '_>) -> Read<Robot> {
                 }
             }
             "equality" => elements(&element).try_for_each(|equality| reader.equality(&equality))?,
-            // Pictures, names and memory.
-            "asset" | "visual" | "statistic" | "size" | "custom" => (),
+            // Read above, pictures, names and memory.
+            "compiler" | "default" | "asset" | "visual" | "statistic" | "size" | "custom" => (),
             section => *reader.left_out.entry(section).or_default() += elements(&element).count(),
         }
     }
-    reader.finish()
+    Ok(reader.finish())
 }
 
 impl<'a, 'd> Reader<'a, 'd> {
@@ -244,7 +243,7 @@ impl<'a, 'd> Reader<'a, 'd> {
     }
 
     /// Scales all masses where their sum is set, and says what has no counterpart.
-    fn finish(mut self) -> Read<Robot> {
+    fn finish(mut self) -> Robot {
         let sum: f64 = self.robot.links.iter().map(|link| link.mass.mass).sum();
         if let Some(total) = self.compiler.total
             && sum > 0.0
@@ -259,7 +258,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         }
         let left_out = self.left_out.iter().filter(|(_, count)| **count > 0);
         self.robot.remarks.extend(left_out.map(|(tag, count)| format!("`{tag}`: {count} without a counterpart")));
-        Ok(self.robot)
+        self.robot
     }
 
     /// The number of an attribute of an element or of its class.
