@@ -126,7 +126,9 @@ impl State {
     /// Makes all of the steps, or on an error none.
     fn make(&self, steps: u64, inputs: &Inputs) -> Result<(), Failure> {
         let mut numbers = self.lock()?;
-        let (stepper, mut state) = self.of_numbers(&numbers)?;
+        let mut driven = numbers.clone();
+        self.drive_wheels(inputs.motors.iter().map(|(wheel, torque)| (wheel.as_str(), *torque)), &mut driven)?;
+        let (stepper, mut state) = self.of_numbers(&driven)?;
         if !inputs.are_none() && stepper.length(&state).is_some() {
             return refused("steps of a pace or a density have lengths of their own, and take no inputs");
         }
@@ -154,7 +156,27 @@ impl State {
             made(&stepper, &mut state, steps, inputs)?;
         }
         numbers.copy_from_slice(state.numbers());
+        self.drive_wheels(inputs.motors.iter().map(|(wheel, _)| (wheel.as_str(), 0.0)), &mut numbers)
+    }
+
+    /// Sets the torques of wheels' motors, N m, in the numbers of a state.
+    fn drive_wheels<'a>(
+        &self,
+        motors: impl Iterator<Item = (&'a str, f64)>,
+        numbers: &mut [f64],
+    ) -> Result<(), Failure> {
+        let Source::File(scene) = &*self.source else { return Ok(()) };
+        for (wheel, torque) in motors {
+            let driven = scene.drive_wheel(wheel, torque, numbers);
+            driven.or_else(|why| refused(&format!("the wheel `{wheel}` {why}")))?;
+        }
         Ok(())
+    }
+
+    /// The names of the wheels of a file's scene.
+    fn wheel_names(&self) -> Vec<&str> {
+        let Source::File(scene) = &*self.source else { return Vec::new() };
+        scene.wheels(&[], &[]).into_iter().map(|(name, _)| name).collect()
     }
 }
 
@@ -163,11 +185,13 @@ struct Inputs {
     torque: Option<Vec<f64>>,
     /// The numbers of all terms, where some are others than those of the scene.
     numbers: Option<Vec<f64>>,
+    /// The torques of wheels' motors, N m, by their names.
+    motors: Vec<(String, f64)>,
 }
 
 impl Inputs {
     const fn are_none(&self) -> bool {
-        self.torque.is_none() && self.numbers.is_none()
+        self.torque.is_none() && self.numbers.is_none() && self.motors.is_empty()
     }
 }
 
@@ -250,17 +274,46 @@ impl State {
         steps: u64,
         torque: Option<Bound<'_, PyAny>>,
         numbers: Option<Vec<f64>>,
+        motors: Vec<(String, f64)>,
     ) -> PyResult<()> {
-        let inputs = Inputs { torque: torque.map(|torque| vector("torque", &torque)).transpose()?, numbers };
+        let inputs = Inputs { torque: torque.map(|torque| vector("torque", &torque)).transpose()?, numbers, motors };
         self.source.forget();
         let made = if steps == 1 { self.make(1, &inputs) } else { py.detach(|| self.make(steps, &inputs)) };
         Ok(made.map_err(|failure| self.source.caused(failure))?)
     }
 
-    /// The forces on all bodies of efforts by the names of joints, and of torques and of forces by the names of bodies.
-    fn forces(&self, torques: Vec<(String, Vec<f64>)>, forces: Vec<(String, Vec<f64>)>) -> PyResult<Vec<f64>> {
-        let Some(system) = self.source.system() else {
-            return Ok(refused("inputs by names are those of several bodies: give the components of one torque")?);
+    /// The forces on all bodies of efforts by the names of joints, and of torques and of forces by the names of bodies; and
+    /// the torques of motors by the names of wheels.
+    #[allow(clippy::type_complexity)] // two lists, as Python passes them on
+    fn inputs(
+        &self,
+        torques: Vec<(String, Vec<f64>)>,
+        forces: Vec<(String, Vec<f64>)>,
+    ) -> PyResult<(Option<Vec<f64>>, Vec<(String, f64)>)> {
+        let (system, wheels) = (self.source.system(), self.wheel_names());
+        let is_wheel = |name: &str| {
+            let is_body =
+                system.is_some_and(|system| system.joint(name).is_some() || system.names().any(|own| own == name));
+            !is_body && wheels.contains(&name)
+        };
+        let (of_wheels, torques): (Vec<_>, Vec<_>) = torques.into_iter().partition(|(name, _)| is_wheel(name));
+        let motor = |(name, numbers): (String, Vec<f64>)| match numbers.as_slice() {
+            &[torque] if torque.is_finite() => Ok((name, torque)),
+            _ => refused(&format!("the torque of the wheel `{name}` is one number")),
+        };
+        let motors = of_wheels.into_iter().map(motor).collect::<Result<_, _>>()?;
+        if torques.is_empty() && forces.is_empty() {
+            return Ok((None, motors));
+        }
+        let Some(system) = system else {
+            let names: Vec<_> = wheels.iter().map(|name| format!("`{name}`")).collect();
+            let message = if wheels.is_empty() {
+                "inputs by names are those of several bodies and of wheels: give the components of one torque"
+                    .to_owned()
+            } else {
+                format!("inputs by names are those of wheels here: {}", names.join(", "))
+            };
+            return Ok(refused(&message)?);
         };
         let mut all = vec![0.0; 6 * system.names().count()];
         for (name, numbers) in &torques {
@@ -275,7 +328,16 @@ impl State {
         for (name, numbers) in &forces {
             on_body(system, name, (numbers, 3), &mut all)?;
         }
-        Ok(all)
+        Ok((Some(all), motors))
+    }
+
+    /// The wheels by their names, with their speeds relative to their bodies, rad/s.
+    #[getter]
+    fn wheels(&self) -> PyResult<Vec<(String, f64)>> {
+        let Source::File(scene) = &*self.source else { return Ok(Vec::new()) };
+        let (stepper, state) = self.now()?;
+        let speeds = scene.wheels(state.numbers(), &stepper.velocity(&state));
+        Ok(speeds.into_iter().map(|(name, speed)| (name.to_owned(), speed)).collect())
     }
 
     /// The names of the bodies; none of one body.

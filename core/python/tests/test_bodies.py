@@ -193,7 +193,7 @@ def test_tables_are_the_scene_of_the_file():
 
 
 @pytest.mark.parametrize(("tables", "message"), [
-    ({}, "title"),
+    ({}, "missing field"),
     ({**TABLES, "title": 3}, "string"),
     ({**TABLES, 3: 3}, "texts"),
     ({**TABLES, "wind": 3}, "unknown field `wind`"),

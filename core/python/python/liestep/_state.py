@@ -83,7 +83,8 @@ class State:
             What acts during these steps, in the axes of the body: on SO(3) a torque, N m; on any group a component for each
             of the velocity's. Half of its impulse ``h f`` is added to the momentum before each step and half behind it, so
             that what is evaluated in the middle of a step leaves the method of second order. Of several bodies by names: of
-            joints a number, N m about the axis or N along the rail of a slider, and of bodies three, N m in their axes.
+            joints a number, N m about the axis or N along the rail of a slider, and of bodies three, N m in their axes. Of wheels
+            of a file's scene by their names, too: a number, N m, that is added to the torque of the motor within its limits.
         force : mapping, optional
             Of several bodies what acts on the centres of mass, N, in space, by the names of bodies.
 
@@ -113,9 +114,10 @@ class State:
         numbers = None if given is None else self._of._given(given)
         if steps.__class__ is not int or not 0 < steps < MOST:
             whole("steps", steps, 1, MOST)
+        motors: list[tuple[str, float]] = []
         if force is not None or isinstance(torque, Mapping):
-            torque = self._native.forces(_named("torque", torque), _named("force", force))
-        self._native.step(steps, torque, numbers)
+            torque, motors = self._native.inputs(_named("torque", torque), _named("force", force))
+        self._native.step(steps, torque, numbers, motors)
 
     @property
     def time(self) -> float:
@@ -170,6 +172,27 @@ class State:
         They are those of a pin, a plane or a slider: of the second body relative to the first, an angle between −π and π.
         """
         return {name: (coordinate, rate) for name, coordinate, rate in self._native.joints}
+
+    @property
+    def wheels(self) -> dict[str, float]:
+        """The speeds of the wheels of a file's scene relative to their bodies, rad/s, by their names.
+
+        Examples
+        --------
+        A wheel takes the momentum of a body that turns about its axis.
+
+        >>> import liestep as ls
+        >>> scene = ls.scene({
+        ...     "body": {"moments": [0.2, 0.25, 0.3]}, "start": {"velocity": [0, 0, 0.1]}, "run": {"step": 0.01, "duration": 1},
+        ...     "wheel": [{"name": "yaw", "axis": [0, 0, 1], "inertia": 1e-3, "largest_torque": 0.02}],
+        ... })
+        >>> state = scene.start()
+        >>> for _ in range(1000):
+        ...     state.step(torque={"yaw": 0.1 * state.velocity[2]})
+        >>> bool(abs(state.velocity[2]) < 4e-3), 28 < state.wheels["yaw"] < 30
+        (True, True)
+        """
+        return dict(self._native.wheels)
 
     @property
     def advected(self) -> dict[str, Any]:

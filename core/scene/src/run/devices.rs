@@ -79,7 +79,7 @@ pub(crate) struct Devices<M> {
 struct Memory {
     /// Momenta of the wheels about their axes, kg m²/s.
     momenta: Vec<f64>,
-    /// Held torques of the laws of wheels, N m.
+    /// Held torques of the laws of wheels, and torques from outside on wheels without a law, N m.
     motors: Vec<f64>,
     /// Held torque of each law on a body, N m.
     torques: Vec<Vector3<f64>>,
@@ -284,12 +284,12 @@ impl<M: Mechanism> Devices<M> {
     fn motors(&self, memory: &Memory, velocity: &[f64], [start, length]: [f64; 2]) -> Vec<f64> {
         let of = |(number, wheel): (usize, &Wheel)| {
             let wanted = match &wheel.motor {
-                Motor::Number(torque) => *torque,
+                Motor::Number(torque) => *torque + memory.motors[number],
                 Motor::Law(_) => memory.motors[number],
                 Motor::Signal(signal) => {
                     let mut mean = vec![0.0; signal.width()];
                     signal.mean([start, length], &mut mean);
-                    mean.first().copied().unwrap_or(f64::NAN)
+                    mean.first().copied().unwrap_or(f64::NAN) + memory.motors[number]
                 }
             };
             let speed = memory.momenta[number] / wheel.inertia - self.turning(wheel, velocity);

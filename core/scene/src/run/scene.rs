@@ -4,8 +4,10 @@ use std::error::Error;
 
 use liestep::motion::{AnyStepper, Moment};
 use liestep::recording::Sink;
+use nalgebra::Vector3;
 
 use crate::file::column::Column;
+use crate::file::control::{Wheel, entries};
 use crate::file::kinds::Scene;
 use crate::file::mistake::Mistake;
 use crate::run::choose;
@@ -90,6 +92,44 @@ impl Scene {
     pub fn numbers(&self, columns: &[Column], now: &Moment<'_, AnyStepper>) -> Vec<f64> {
         let now = sample(&self.file.view(), now);
         Column::row(columns, &now, &now)
+    }
+
+    /// The wheels by their names, with their speeds relative to their bodies, rad/s, from the numbers of a state of
+    /// [`stepper`](Self::stepper) and its velocity.
+    #[must_use]
+    pub fn wheels(&self, numbers: &[f64], velocity: &[f64]) -> Vec<(&str, f64)> {
+        let bodies = self.file.system.as_ref().map_or(1, |system| system.names().count());
+        let part = |wheel: &Wheel, k: usize| {
+            velocity.get(wheel.body * velocity.len() / bodies + k).copied().unwrap_or(f64::NAN)
+        };
+        let mut all = Vec::new();
+        for (number, wheel) in self.file.wheel.iter().enumerate() {
+            let turning = Vector3::from_fn(|k, _| part(wheel, k)).dot(&wheel.axis);
+            let momentum = numbers.get(self.memory(numbers) + number).copied().unwrap_or(f64::NAN);
+            all.push((wheel.name.as_str(), momentum / wheel.inertia - turning));
+        }
+        all
+    }
+
+    /// Sets the torque, N m, that a program adds to that of a wheel's motor in the steps from a state of
+    /// [`stepper`](Self::stepper) on, whose numbers these are; the limits of the wheel hold for their sum.
+    ///
+    /// # Errors
+    ///
+    /// The reason why a program can't drive this wheel.
+    pub fn drive_wheel(&self, name: &str, torque: f64, numbers: &mut [f64]) -> Result<(), &'static str> {
+        let number = self.file.wheel.iter().position(|wheel| wheel.name == name).ok_or("isn't the name of a wheel")?;
+        if self.file.wheel[number].controller().is_some() {
+            return Err("is driven by its law: give it a number as its `torque`, or none");
+        }
+        let place = self.memory(numbers) + self.file.wheel.len() + number;
+        *numbers.get_mut(place).ok_or("has no place in these numbers")? = torque;
+        Ok(())
+    }
+
+    /// The place of the wheels' momenta among the numbers of a state; the torques of their motors follow.
+    fn memory(&self, numbers: &[f64]) -> usize {
+        numbers.len().saturating_sub(1 + entries(&self.file.control, &self.file.wheel))
     }
 
     /// The events to be detected, in the order of their [names](Self::events).
