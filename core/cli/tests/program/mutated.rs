@@ -204,8 +204,9 @@ impl Watched {
 
 impl Drop for Watched {
     fn drop(&mut self) {
-        if let Ok(mut now) = self.0.lock() {
-            *now = None;
+        let now = self.0.lock().ok().and_then(|mut now| now.take());
+        if let Some((_, text)) = now.filter(|_| thread::panicking()) {
+            eprintln!("by this file:\n{text}");
         }
     }
 }

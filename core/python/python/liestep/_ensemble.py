@@ -232,13 +232,13 @@ class Ensemble:
                 whole(name, steps, 1, 2**63 - 1)
         if not isinstance(share, str):
             raise SetupError(f'a share is a text, as "1/4", not {shown(share)}')
-        shown = _bar if progress is True else None if progress is False else progress
+        listener = _bar if progress is True else None if progress is False else progress
         term, (kind, scheme, *rest) = self.stepper.term, self.stepper.method
         # One plan is told from another by all that it is made of.
         over_time = [(name, signal.key()) for name, signal in term._signals().items()]
         plan_name = repr((term.summands, over_time, kind, scheme, rest, self.stepper.step, self._draws, self._start, self._turns))
         plan = _Members(plan_name, self.members, self.seed, end, every, chunk, str(folder), threads,
-                        _native.share(share), self._turns, shown)
+                        _native.share(share), self._turns, listener)
         made = self.stepper._native.members(self.stepper.step, self.stepper.method, self._start, self._draws, plan)
         return Many(made)
 
