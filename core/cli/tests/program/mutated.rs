@@ -25,7 +25,8 @@ impl Random {
 fn seeds() -> Vec<String> {
     let folders = ["../../examples/scenes", "tests/program/scenes"];
     let files = |folder: &str| fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(folder)).unwrap();
-    let mut paths: Vec<_> = folders.iter().flat_map(|folder| files(folder)).map(|entry| entry.unwrap().path()).collect();
+    let mut paths: Vec<_> =
+        folders.iter().flat_map(|folder| files(folder)).map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|ending| ending == "toml"));
     paths.sort();
     // A shorter search for an accuracy.

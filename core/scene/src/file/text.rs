@@ -36,9 +36,7 @@ pub(crate) fn check_name(of: &str, name: &str) -> Result<(), String> {
     let like = |letter: char| if letter.is_alphanumeric() || letter == '-' { letter } else { '_' };
     let plain: String = name.chars().map(like).collect();
     let advice = if plain.is_empty() { String::new() } else { format!(": write `{plain}`") };
-    Err(format!(
-        "the `name` of {of} has letters, digits, - and _ only, as keys and columns are made with it{advice}"
-    ))
+    Err(format!("the `name` of {of} has letters, digits, - and _ only, as keys and columns are made with it{advice}"))
 }
 
 /// A title, or the name of the file where there is none.
