@@ -33,6 +33,8 @@ def _spread(kind: str, first: Any, second: Any) -> Spread:
         one, two = np.broadcast_arrays(one, two)
     except ValueError as error:
         raise SetupError(f"what is drawn has the shapes {one.shape} and {two.shape}: give one for both") from error
+    if one.size == 0:
+        raise SetupError("what is drawn has no number")
     if not (np.isfinite(one).all() and np.isfinite(two).all()):
         raise SetupError("what is drawn is drawn from finite numbers")
     return Spread(kind, tuple(one.ravel().tolist()), tuple(two.ravel().tolist()))
