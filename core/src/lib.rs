@@ -51,7 +51,7 @@ pub mod __private;
 pub use error::{SetupError, StepError};
 pub use groups::SO3;
 pub use liestep_macros::{constraint, force, lagrangian, nonholonomic};
-pub use mechanics::NonstandardInertia;
+pub use mechanics::{Inertia, NonstandardInertia};
 pub use motion::{State, StateOf, Stepper};
 pub use nalgebra;
 

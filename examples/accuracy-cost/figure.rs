@@ -15,8 +15,9 @@ pub struct Panel<'a> {
 /// The colour of methods without one of their own.
 const GREY: RGBColor = RGBColor(150, 150, 150);
 
-const ABOUT: &str = "error of attitude and rate against time of one processor; grey lies to the right: each stage solves an \
-                     equation, and errs in the whole motion, not in the potential's share alone";
+const ABOUT: &str = "error of attitude and rate against time of one processor; grey: each stage solves an equation, and errs in the whole motion";
+/// The picture is as wide as some 140 letters.
+const _: () = assert!(ABOUT.len() < 140);
 
 /// The lines of a panel: kinds of methods, by the names of [`liestep::Stepper`]'s functions.
 const KINDS: [(Kind, &str, RGBColor); 6] = [

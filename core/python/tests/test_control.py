@@ -202,3 +202,9 @@ def test_the_shortest_time_needs_no_guess(axis, angle):
     assert plan.converged and plan.duration == pytest.approx(2 * angle**0.5, rel=1e-3)
     stalled = ls.body([1, 1, 1]).control(step=0.03, steps=100, goal=turn, bound=1, axes=axis, minimum_time=True, guess=0.0).solve()
     assert stalled.converged or "guess" in stalled.why
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, -np.inf, np.nan])
+def test_a_tolerance_that_no_residual_reaches_ends_the_search(tolerance):
+    plan = ls.body([1, 2, 2.5]).control(step=0.1, steps=3, goal=[1, 0, 0, 0]).solve(tolerance=tolerance, iterations=3)
+    assert plan.iterations <= 3 and not abs(plan.velocity).any()

@@ -47,6 +47,16 @@ def by_names(name: str, values: Any) -> Mapping[str, Any]:
     raise SetupError(f"`{name}` has values by their names, as {{\"velocity\": …}}, and isn't {shown(values)}")
 
 
+def listed(name: str, values: Any) -> list[str]:
+    """Names: one text, or several."""
+    try:
+        return [text(name, one) for one in ([values] if isinstance(values, str) else values)]
+    except Exception as cause:
+        if isinstance(cause, Error):
+            raise
+        raise SetupError(f"`{name}` is a name, or a list of some, not {shown(values)}") from cause
+
+
 def _is_real(one: Any) -> bool:
     """Whether an object, such as a fraction, is a real number."""
     return hasattr(one, "__float__") and not isinstance(one, complex)

@@ -9,7 +9,7 @@ from math import cos, inf
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._arrays import floats, number, shown, whole
+from ._arrays import floats, listed, number, shown, whole
 from ._declared import Sum
 from ._run import Columns, Run
 from ._stepper import _numbers, _Start, _start
@@ -122,7 +122,7 @@ def chosen(term: Sum, inputs: str | Iterable[str]) -> tuple[list[int], list[str]
     """The places of the numbers of some parameters among all, and a name for each."""
     places: list[int] = []
     names: list[str] = []
-    for name in [inputs] if isinstance(inputs, str) else inputs:
+    for name in listed("inputs", inputs):
         found = term._found(name)
         if len(found) > 1:
             raise SetupError(f"`{name}` is a parameter of several terms: write the one, as `{name}_1`")

@@ -33,6 +33,8 @@ def _spread(kind: str, first: Any, second: Any) -> Spread:
         one, two = np.broadcast_arrays(one, two)
     except ValueError as error:
         raise SetupError(f"what is drawn has the shapes {one.shape} and {two.shape}: give one for both") from error
+    if one.size == 0:
+        raise SetupError("what is drawn has no number")
     if not (np.isfinite(one).all() and np.isfinite(two).all()):
         raise SetupError("what is drawn is drawn from finite numbers")
     return Spread(kind, tuple(one.ravel().tolist()), tuple(two.ravel().tolist()))
@@ -235,13 +237,13 @@ class Ensemble:
                 whole(name, steps, 1, 2**63 - 1)
         if not isinstance(share, str):
             raise SetupError(f'a share is a text, as "1/4", not {shown(share)}')
-        shown = _bar if progress is True else None if progress is False else progress
+        listener = _bar if progress is True else None if progress is False else progress
         term, (kind, scheme, *rest) = self.stepper.term, self.stepper.method
         # One plan is told from another by all that it is made of.
         over_time = [(name, signal.key()) for name, signal in term._signals().items()]
         plan_name = repr((term.summands, over_time, kind, scheme, rest, self.stepper.step, self._draws, self._start, self._turns))
         plan = _Members(plan_name, self.members, self.seed, end, every, chunk, str(folder), threads,
-                        _native.share(share), self._turns, shown)
+                        _native.share(share), self._turns, listener)
         made = self.stepper._native.members(self.stepper.step, self.stepper.method, self._start, self._draws, plan)
         return Many(made)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from . import _native
-from ._arrays import by_names, floats, number, shown, whole
+from ._arrays import by_names, floats, listed, number, shown, whole
 from ._control import _components, chosen
 from ._declared import Sum, _shaped
 from ._run import Run, rotations
@@ -222,7 +222,7 @@ def estimate(
             raise SetupError("an estimate begins with a `velocity`: give a guess, or readings of it")
         velocity = floats("velocity", readings["velocity"][0], SetupError)[0]
     places, unknowns, guesses, names = [], [], [], []
-    for name in [unknown] if isinstance(unknown, str) else unknown:
+    for name in listed("unknown", unknown):
         value, own, own_names = _unknown(term, name)
         places.append((name, value, own))
         unknowns += own

@@ -53,7 +53,8 @@ def _check_body(J: Any) -> None:
 
     if isinstance(J, Signal):
         return
-    matrix = diagonal(floats("J", J, DeclarationError)[None])[0] if np.ndim(J) == 1 else floats("J", J, DeclarationError)
+    matrix = floats("J", J, DeclarationError)
+    matrix = diagonal(matrix[None])[0] if matrix.ndim == 1 else matrix
     if matrix.shape != (3, 3) or abs(matrix - matrix.T).max() > 1e-12 * abs(matrix).max():
         return
     least, middle, largest = np.linalg.eigvalsh(matrix)

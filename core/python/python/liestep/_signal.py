@@ -68,7 +68,7 @@ class Signal:
         times, values, between = self._source
         if between == "orbit":
             raise SetupError(f"{self!r} is no inertia")
-        return Signal(times, _Composition(function, values) if between is None else function(values), between)
+        return Signal(times, _Composition(function, values) if between is None else floats("values", function(values), SetupError), between)
 
     @property
     def first(self) -> Array:

@@ -131,6 +131,8 @@ def _course(until: Any, every: Any, times: Any, events: Mapping[str, Any] | None
     asked = floats("times", times, SetupError)
     if asked.ndim != 1:
         raise SetupError(f"`times` is a list of times, not an array of shape {asked.shape}")
+    if asked.size == 0:
+        raise SetupError("`times` are those of the rows, and there is none: give one, or leave `times` out")
     lengths = asked[1:] - asked[:-1]
     if (lengths > 0).any() and (lengths < 0).any():
         raise SetupError("`times` are in their order, and some come after a later one: sort them")

@@ -152,9 +152,14 @@ impl<'de, T: Deserialize<'de>> Visitor<'de> for ListOrTable<T> {
     }
 
     fn visit_map<M: MapAccess<'de>>(self, mut table: M) -> Result<Self::Value, M::Error> {
-        match (table.next_key::<String>()?.as_deref(), table.next_value()?, table.next_key::<String>()?) {
-            (Some("effective"), value, None) => Ok(AnyInertia { value, is_effective: true }),
-            _ => Err(M::Error::custom("an inertia is a list, or `{ effective = […] }` where no rigid body has it")),
+        let wrong = || M::Error::custom("an inertia is a list, or `{ effective = […] }` where no rigid body has it");
+        if table.next_key::<String>()?.as_deref() != Some("effective") {
+            return Err(wrong());
+        }
+        let value = table.next_value()?;
+        match table.next_key::<String>()? {
+            None => Ok(AnyInertia { value, is_effective: true }),
+            Some(_) => Err(wrong()),
         }
     }
 }

@@ -134,8 +134,13 @@ impl View {
 
 /// The last state of a body, for the summary of a run.
 pub(crate) fn at_the_end(view: &View, (attitude, velocity): ([f64; 4], Vector3<f64>), numbers: &[f64]) -> String {
-    let list = |parts: &[f64]| parts.iter().map(|part| format!("{part:.6}")).collect::<Vec<_>>().join(", ");
-    let angle = |(name, angle): (&str, f64)| format!(", {name} {:.3} deg", angle.to_degrees());
+    // A small negative number has no sign once it is rounded to zero.
+    let plain = |text: String| match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|letter| "0.".contains(letter)) => zero.to_owned(),
+        _ => text,
+    };
+    let list = |parts: &[f64]| parts.iter().map(|part| plain(format!("{part:.6}"))).collect::<Vec<_>>().join(", ");
+    let angle = |(name, angle): (&str, f64)| format!(", {name} {} deg", plain(format!("{:.3}", angle.to_degrees())));
     let angles = view.named(numbers).map(angle).collect::<Vec<_>>().concat();
     let rates = velocity.map(f64::to_degrees);
     format!("\n  at the end quaternion [{}], velocity [{}] deg/s{angles}", list(&attitude), list(rates.as_slice()))

@@ -207,7 +207,7 @@ fn parameters(
 }
 
 /// Whether the configurations of these factors are orthogonal matrices.
-fn is_orthogonal(group: &Group, seen: View) -> bool {
+pub fn is_orthogonal(group: &Group, seen: View) -> bool {
     let turns = |factor: usize| group.factor(factor).orthogonal && !group.factor(factor).is_added;
     match seen {
         View::Relative { of, from } => turns(of) && turns(from),

@@ -50,7 +50,11 @@ impl Checker<'_> {
             "t" | "time" => format!(
                 "; {noun} has no time: declare what changes with it by `given(u = field)`, and go on by `step_with`"
             ),
-            "omega" | "Omega" | "xi" | "velocity" => self.advice_on_velocity(name),
+            "omega" | "Omega" | "Ω" | "ω" | "xi" | "velocity" => self.advice_on_velocity(name),
+            "angle" | "theta" | "phi" | "psi" | "θ" | "φ" | "ψ" if self.turns() => format!(
+                "; {noun} has no angles: the cosine of the angle between two directions is `w.dot(&e)`, of a field `e` in the body and \
+                 one in space that `advected(w = up)` turns into the body's axes"
+            ),
             "R" | "rotation" | "attitude" | "orientation" if !is_product => format!(
                 "; {noun} is reduced, and sees no `{name}`: what is fixed in space is declared with `advected(w = field)`"
             ),
@@ -78,6 +82,11 @@ impl Checker<'_> {
             format!("; if it is where `{factor}` has come to, `advected({name} = {factor}.seen_from(space))`")
         };
         own.filter(|_| !self.is_constraint()).map(|(_, factor)| place(&factor.name)).unwrap_or_default()
+    }
+
+    /// Whether the group turns bodies in space.
+    fn turns(&self) -> bool {
+        self.declaration.group.factors().iter().any(|factor| factor.is_so3)
     }
 
     /// The advice for a name that usually means a velocity.

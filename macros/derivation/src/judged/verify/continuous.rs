@@ -107,7 +107,7 @@ impl<'a> Motion<'a> {
     /// The degrees of a point whose attitudes are Cayley transforms.
     fn point_of_degrees(&self, number: &mut impl FnMut() -> Degree) -> Values<Degree> {
         let mut values = self.point(&mut *number);
-        let transforms = u64::try_from(degree::attitudes(self.declaration).count()).unwrap_or(u64::MAX / 2);
+        let transforms = u64::try_from(degree::transforms(self.declaration)).unwrap_or(u64::MAX / 2);
         degree::set_attitudes(self.declaration, &mut values, 2 * transforms, number);
         values
     }

@@ -7,11 +7,11 @@
 use std::ops::Add;
 use std::rc::Rc;
 
-use super::Values;
 use super::number::{self, Number, operator};
 use super::residue::{Residue, mixed};
 use super::sample::Element;
 use super::value::Value;
+use super::{Values, turned};
 use crate::declared::{Declaration, FieldKind, Kind, Name, Tree, parts};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Function, Rational};
@@ -201,6 +201,15 @@ pub fn set_attitudes(
 pub fn attitudes(declaration: &Declaration) -> impl Iterator<Item = usize> {
     let all = 0..declaration.advected.len();
     all.filter(|&index| matches!(declaration.advected_kind(index), FieldKind::Configuration(_)))
+}
+
+/// The number of Cayley transforms of which the attitudes among the parameters are products.
+pub fn transforms(declaration: &Declaration) -> usize {
+    let of_attitude = |index: usize| {
+        let (name, kind) = (Name::Advected(index), declaration.advected_kind(index));
+        turned(declaration, name, kind).filter(|&rows| rows > 3).map_or(1, |rows| rows * (rows - 1) / 2)
+    };
+    attitudes(declaration).map(of_attitude).sum()
 }
 
 /// The functions and constants of a tree or of a graph.

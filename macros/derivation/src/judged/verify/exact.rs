@@ -55,7 +55,7 @@ impl Identities<'_> {
 
     fn degrees(&self, same: &mut Same<Degree>) -> Result<(), Objection> {
         let (declaration, mut number) = (self.of.declaration, Degree::stream());
-        let attitudes = degree::attitudes(declaration).count();
+        let attitudes = degree::transforms(declaration);
         let (element, degree) = degree::element(&declaration.group, attitudes, &mut number);
         let mut sample = Sample::at(self.of, element, &mut number);
         degree::set_attitudes(declaration, &mut sample.values, degree, &mut number);

@@ -70,6 +70,7 @@ mod velocity;
 use std::collections::BTreeMap;
 
 use super::places::variables;
+use crate::declared::lower::is_orthogonal;
 use crate::declared::{Declaration, FieldKind, Name, Shape};
 use crate::mathematics::group::Group;
 use crate::mathematics::symbolic::{Rational, SymbolId};
@@ -221,7 +222,37 @@ fn increments<T: Number>(group: &Group, matrices: &[Value<T>]) -> Values<T> {
 
 /// Values of all fields and advected parameters.
 fn parameters<T: Number>(declaration: &Declaration, number: &mut impl FnMut() -> T) -> Values<T> {
-    variables(declaration).concat().into_iter().map(|(name, kind)| (name, parameter(kind, number))).collect()
+    let value = |(name, kind): (Name, FieldKind)| match turned(declaration, name, kind) {
+        Some(rows) if rows > 3 => (name, rotation(rows, number)),
+        _ => (name, parameter(kind, number)),
+    };
+    variables(declaration).concat().into_iter().map(value).collect()
+}
+
+/// The rows of an attitude among the parameters that is an orthogonal matrix.
+fn turned(declaration: &Declaration, name: Name, kind: FieldKind) -> Option<usize> {
+    let Name::Advected(index) = name else { return None };
+    let is_attitude = matches!(kind, FieldKind::Configuration(_));
+    let is_turned = is_attitude && is_orthogonal(&declaration.group, declaration.advected[index].seen);
+    is_turned.then(|| kind.shape().rows())
+}
+
+/// A random rotation of more than three rows: a product of Cayley transforms of turns in all planes of two axes. That of a
+/// skew matrix has no short form there.
+fn rotation<T: Number>(rows: usize, number: &mut impl FnMut() -> T) -> Value<T> {
+    let planes = (0..rows).flat_map(|row| (0..row).map(move |column| (row, column)));
+    planes.fold(Value::identity(rows), |product, (row, column)| {
+        let turn = number();
+        let [forwards, _] = cayley(
+            &Value::new(rows, rows, |i, j| match (i, j) {
+                place if place == (row, column) => turn,
+                place if place == (column, row) => -turn,
+                _ => T::ZERO,
+            }),
+            -(turn * turn),
+        );
+        product.times(&forwards)
+    })
 }
 
 /// Displacements of all factors, at the beginning of a step and at its end.
