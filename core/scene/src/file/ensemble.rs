@@ -97,7 +97,7 @@ fn of_columns(ensemble: &SceneEnsemble, scene: &Scene, at: &dyn Fn(&[&str]) -> R
     }
     // Numbers from this place on are read by what a member may draw.
     let (file, events, changes) = (&scene.file, &scene.file.event, scene.file.changing().is_some());
-    let (first, is_limited) = (file.view().first(), file.event_names().len() > events.len());
+    let (first, is_limited) = (file.behind_motion(), file.event_names().len() > events.len());
     let names_energy = |event: &Event| matches!(event.quantity, Quantity::Energy(_));
     let keeps_energy = scene.columns().iter().any(|column| column.key() == "energy");
     if changes && (events.iter().any(names_energy) || keeps_energy && !events.is_empty()) {

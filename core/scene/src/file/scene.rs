@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use liestep_late::Declaration;
+use liestep_late::{Declaration, LateError};
 use nalgebra::Matrix3;
 use serde::Deserialize;
 use toml::Spanned;
@@ -12,7 +12,7 @@ use toml::de::{DeValue, Error, ValueDeserializer};
 use crate::file::beginning::Beginning;
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
-use crate::file::control::{self, Control, Wheel, entries};
+use crate::file::control::{self, Control, Wheel};
 use crate::file::effects::{self, EFFECTS, EffectEntry, Table, effects};
 use crate::file::event::Event;
 use crate::file::group::Group;
@@ -23,7 +23,7 @@ use crate::file::orbit::{Time, put};
 use crate::file::over_time::OverTime;
 use crate::file::parameter::in_value;
 use crate::file::picture::Picture;
-use crate::file::pointing::{Pointing, View};
+use crate::file::pointing::Pointing;
 use crate::file::quantity::{Rate, in_si, round};
 use crate::file::schedule::{Pace, Schedule};
 use crate::file::system::System;
@@ -169,7 +169,23 @@ impl SceneFile {
 
     /// The terms of the file's own.
     pub(crate) fn own(&self) -> impl Iterator<Item = &DeclaredTerm> {
-        self.lagrangian.iter().chain(&self.hamiltonian).chain(&self.force).chain(&self.nonholonomic)
+        let [before, behind] = self.around();
+        before.chain(behind)
+    }
+
+    /// The terms of the file's own, those before the effects in a sum and those behind.
+    pub(crate) fn around(&self) -> [impl Iterator<Item = &DeclaredTerm>; 2] {
+        [self.lagrangian.iter().chain(&self.hamiltonian), self.force.iter().chain(&self.nonholonomic)]
+    }
+
+    /// The sum of a body's text, if any, and of the file's Lagrangians, effects, forces and constraints, or its Hamiltonian, which is
+    /// derived once per process; none of nothing.
+    pub(crate) fn declared(&self, body: Option<&str>) -> Result<Option<&'static Declaration>, LateError> {
+        let body = body.map(Declaration::parse).into_iter();
+        let [before, behind] = self.around().map(|own| own.map(|own| Ok(own.declaration)));
+        let listed = self.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
+        let terms = body.chain(before).chain(listed).chain(behind).collect::<Result<Vec<_>, _>>()?;
+        if terms.is_empty() { Ok(None) } else { Declaration::sum(&terms).map(Some) }
     }
 
     /// The name of the first force.
@@ -189,19 +205,6 @@ impl SceneFile {
     /// Whether laws or wheels turn the body.
     pub(crate) fn has_devices(&self) -> bool {
         !self.control.is_empty() || !self.wheel.is_empty()
-    }
-
-    /// The numbers that a sample has.
-    pub(crate) fn view(&self) -> View {
-        View {
-            group: self.group.clone(),
-            system: self.system.clone(),
-            orbit: self.orbit,
-            pointing: self.pointing.clone().into(),
-            wheels: self.wheel.clone().into(),
-            controls: self.control.iter().map(|control| control.body).collect(),
-            memory: entries(&self.control, &self.wheel),
-        }
     }
 
     /// A time, s, with the orbit.

@@ -11,7 +11,7 @@ use crate::file::orbit::Time;
 use crate::file::scene::SceneFile;
 
 /// The spin of a body's wheels and the torque on it in a step, body frame, kg m²/s and N m.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Default, PartialEq)]
 pub(crate) struct Held {
     pub(crate) spin: Vector3<f64>,
     pub(crate) torque: Vector3<f64>,
@@ -45,11 +45,16 @@ pub(crate) trait Mechanism {
     /// Adds impulses to the momenta of the bodies, N m s in the body frame and N s in space.
     fn push(&self, numbers: &Self::Numbers, state: &mut [f64], impulses: &[f64]) -> Result<(), StepError>;
 
+    /// Projects momenta onto those whose velocities keep joints closed: a step does so with other numbers than those of its end.
+    fn project(&self, _: &Self::Numbers, _state: &mut [f64]) -> Result<(), StepError> {
+        Ok(())
+    }
+
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]);
 
     fn defect(&self, state: &[f64]) -> f64;
 
-    fn gap(&self, _numbers: &Self::Numbers, _state: &[f64]) -> f64 {
+    fn gap(&self, _state: &[f64]) -> f64 {
         0.0
     }
 
@@ -328,6 +333,10 @@ impl<M: Mechanism> Devices<M> {
             begin += share;
         }
         memory.momenta = memory.after(&motors, length);
+        if !motors.is_empty() {
+            let end = self.numbers([now + length, 0.0], &memory.momenta, &memory.torques)?;
+            self.mechanism.project(&end, &mut next)?;
+        }
         Ok((next, memory, StepReport::of(iterations)))
     }
 }
@@ -469,11 +478,7 @@ impl<M: Mechanism> Propagator for Devices<M> {
     }
 
     fn gap(&self, state: &[f64]) -> f64 {
-        let gap = self.layout.checked(state).and_then(|state| {
-            let (inner, memory) = self.parts(state);
-            Ok(self.mechanism.gap(&self.now(state, &memory)?, &inner))
-        });
-        gap.unwrap_or(f64::NAN)
+        self.layout.checked(state).map_or(f64::NAN, |state| self.mechanism.gap(&self.parts(state).0))
     }
 
     fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
