@@ -345,3 +345,23 @@ fn a_picture_has_any_panels() {
         "{wrong}"
     );
 }
+
+/// A weld takes up what laws and motors do to a body at rest, and its weight.
+#[test]
+fn a_weld_takes_up_laws_and_motors() {
+    let folder = folder("a_weld_takes_up_laws_and_motors");
+    for held in ["every = 0.02", "at = \"both ends\""] {
+        let text = format!(
+            "title = \"Held\"\ngravity = {{ g = 9.81, up = [0, 0, 1] }}\n[[body]]\nname = \"a\"\nm = 2\nmoments = [1, 2, 2.5]\n\
+             [[joint]]\nkind = \"weld\"\nbodies = [\"space\", \"a\"]\nat = [[0, 0, 0], [0, 0, 0]]\n\
+             [[control]]\ntorque = \"[0.1, -0.2, 0.3] - Omega\"\n{held}\n\
+             [[wheel]]\naxis = [0, 0.6, 0.8]\ninertia = 0.02\nspeed = 30\ntorque = 0.05\n\
+             [run]\nduration = 0.1\nstep = 0.01\n[output]\nevery = 1\ncolumns = [\"velocity\", \"force\", \"torque\"]\n"
+        );
+        for row in rows(&folder, &text) {
+            let expected = [0.0, 0.0, 0.0, 0.0, 0.0, 19.62, -0.1, 0.2 + 0.03, -0.3 + 0.04];
+            let off = row[1..].iter().zip(expected).map(|(own, exact)| (own - exact).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-11, "{held}: {row:?}");
+        }
+    }
+}

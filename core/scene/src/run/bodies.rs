@@ -21,7 +21,7 @@ use crate::file::orbit::Time;
 use crate::file::part::{Between, SystemBody};
 use crate::file::scene::SceneFile;
 use crate::file::system::{Spring, System};
-use crate::run::devices::{Held, Mechanism};
+use crate::run::devices::{BodyInput, Mechanism};
 use crate::run::nearest::BodyState;
 
 /// A body with its weight. One of the three kinetic terms has the factor one, the others zero.
@@ -150,7 +150,13 @@ impl System {
     }
 
     /// Adds what acts on the bodies of a file at a time, with what is held.
-    fn act(&self, file: &SceneFile, system: &mut Multibody, now: Time<'_>, held: &[Held]) -> Result<(), SetupError> {
+    fn act(
+        &self,
+        file: &SceneFile,
+        system: &mut Multibody,
+        now: Time<'_>,
+        held: &[BodyInput],
+    ) -> Result<(), SetupError> {
         for (number, body) in self.bodies.iter().enumerate() {
             let J = match &body.J {
                 Some(J) => locked(J, &file.wheel, number),
@@ -168,7 +174,7 @@ impl System {
                     system.on(number, turning);
                 }
             }
-            let Held { spin, torque } = held.get(number).copied().unwrap_or_default();
+            let BodyInput { spin, torque } = held.get(number).copied().unwrap_or_default();
             if spin != Vector3::zeros() {
                 system.on(number, Rotor { spin });
             }
@@ -249,20 +255,20 @@ fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) 
 }
 
 /// Several bodies with laws and wheels, or along an orbit.
-pub(crate) struct Driven {
+pub(crate) struct Bodies {
     file: SceneFile,
     system: Arc<System>,
     joined: Multibody,
     /// The stepper at the time zero.
     first: MultibodyStepper,
     /// The last stepper, with its time and what was held.
-    last: RefCell<Option<Known>>,
+    last: RefCell<Option<LastStepper>>,
 }
 
 /// A stepper with its span of time, s, and what is held in it.
-type Known = ([f64; 2], Vec<Held>, Rc<MultibodyStepper>);
+type LastStepper = ([f64; 2], Vec<BodyInput>, Rc<MultibodyStepper>);
 
-impl Driven {
+impl Bodies {
     /// The bodies of a file, with steps of `h`, s.
     pub(crate) fn new(file: &SceneFile, system: &Arc<System>, h: f64) -> Result<Self, SetupError> {
         let (first, _) = system.multibody(file, Scheme::Step, h)?;
@@ -276,14 +282,14 @@ impl Driven {
     }
 }
 
-impl Mechanism for Driven {
+impl Mechanism for Bodies {
     type Numbers = Rc<MultibodyStepper>;
 
     fn layout(&self) -> &Layout {
         self.first.layout()
     }
 
-    fn numbers(&self, [start, length]: [f64; 2], held: &[Held]) -> Option<Rc<MultibodyStepper>> {
+    fn numbers(&self, [start, length]: [f64; 2], held: &[BodyInput]) -> Option<Rc<MultibodyStepper>> {
         let mut last = self.last.borrow_mut();
         if let Some((span, known, stepper)) = &*last
             && (span, &known[..]) == (&[start, length], held)

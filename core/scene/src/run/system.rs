@@ -17,7 +17,7 @@ use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
-use crate::run::bodies::Driven;
+use crate::run::bodies::Bodies;
 use crate::run::choose::shares;
 use crate::run::devices::Devices;
 use crate::run::make::{Note, Place, Run, Stop, Watch, fast_turn, told};
@@ -127,7 +127,7 @@ impl System {
         let start = if is_driven {
             let (layout, mut velocity) = (stepper.layout(), vec![0.0; stepper.layout().components()]);
             Propagator::velocity(&stepper, &state, &mut velocity);
-            let bodies = Driven::new(file, self, step).map_err(Stop::Setup)?;
+            let bodies = Bodies::new(file, self, step).map_err(Stop::Setup)?;
             let driven = Devices::new(file.clone(), (bodies, self.bodies.len()), (step, shares(file)));
             let any = AnyStepper::new(driven.map_err(Stop::Setup)?);
             let state = any.start(&state[layout.attitude()], &velocity).map_err(Stop::Start)?;
