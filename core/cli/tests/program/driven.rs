@@ -1,6 +1,9 @@
 //! Laws, wheels, pointings and orbits of several bodies, against one body, an integration with SciPy and closed forms.
 
+use liestep::motion::Integrator as _;
+
 use crate::called::{folder, refused, rows};
+use crate::joints::system;
 
 /// A hub with a wheel and a panel with a law and a dipole, on an orbit.
 const SATELLITE: &str = r#"title = "A hub with a panel"
@@ -284,4 +287,81 @@ fn events_name_their_bodies() {
     let cosine = 1.0 - 2.0 * (number(tilted, 12).powi(2) + number(tilted, 13).powi(2));
     assert!((cosine - 0.5_f64.cos()).abs() < 1e-9, "{cosine}");
     assert!((number(of("angle"), 25) - 2.0).abs() < 1e-9);
+}
+
+/// A constant law, held by the term of a torque, moves jointed bodies as forces from outside do that are pushed upon the momenta.
+#[test]
+fn a_held_law_is_a_force_from_outside() {
+    let law = |text: &str| SATELLITE.replace("-k * Omega", text).replace("at = \"both ends\"", "every = 0.04");
+    let [(held, mut one), (free, mut other)] =
+        ["[0.1, -0.2 * k, 0.05]", "[0, 0, 0 * k]"].map(|text| system(&law(text)).stepper().unwrap());
+    let force = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.1, -0.04, 0.05, 0.0, 0.0, 0.0];
+    for _ in 0..100 {
+        held.step(&mut one).unwrap();
+        free.step_forced(&mut other, &force).unwrap();
+    }
+    let apart = |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let off = apart(one.attitude(), other.attitude()).max(apart(&held.velocity(&one), &free.velocity(&other)));
+    assert!(off < 1e-12, "{off:e}");
+    let still = system(&law("[0, 0, 0 * k]")).stepper().unwrap();
+    let mut unforced = still.1;
+    still.0.run(&mut unforced, 100).unwrap();
+    assert!(apart(one.attitude(), unforced.attitude()) > 0.1);
+    assert!(
+        free.step_forced(&mut other, &force[..6]).is_err() && free.step_forced(&mut other, &[f64::NAN; 12]).is_err()
+    );
+}
+
+/// The momentum of a start with wheels starts the same motion, with the wheels at their speeds relative to their bodies.
+#[test]
+fn a_momentum_with_wheels_has_its_velocity() {
+    let second = "[[wheel]]\nname = \"v\"\nbody = \"panel\"\naxis = [1, 0, 0]\ninertia = 0.3\nspeed = -7\n[[control]]";
+    let (stepper, start) = system(&SATELLITE.replace("[[control]]", second)).stepper().unwrap();
+    let again = stepper.start_with_momentum(start.attitude(), start.momentum()).unwrap();
+    let [one, other] = [&start, &again].map(|state| stepper.velocity(state));
+    let off = one.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off < 1e-13 && (one[8] + 0.1).abs() < 1e-13, "{off:e} {one:?}");
+    assert!((stepper.energy(&start) - stepper.energy(&again)).abs() < 1e-12);
+}
+
+/// A picture of several bodies has the panels of one, with a curve for each body, and the default of its own.
+#[test]
+fn a_picture_has_any_panels() {
+    let picture = |panels: &str| {
+        let scene = system(&(SATELLITE.to_owned() + panels));
+        scene.picture(&scene.run().unwrap()).unwrap()
+    };
+    let own =
+        picture("[picture]\naxis = [1, 0, 0]\npanels = [\"rates\", \"tilt\", \"momentum\", \"momentum-error\"]\n");
+    for title in ["Angular velocities", "Tilt of the axis", "Angular momentum in space", "Ways of the centres of mass"]
+    {
+        assert!(own.contains(title), "{title}");
+    }
+    let default = picture("");
+    assert!(default.contains("Turned from the start by") && default.contains("Energy: how far from its start"));
+    let wrong = crate::joints::message(&(SATELLITE.to_owned() + "[picture]\npanels = [\"attitude\"]\n"));
+    assert!(
+        wrong.ends_with("the `attitude` of several bodies has no panel: `turns` has how far each is turned"),
+        "{wrong}"
+    );
+}
+
+/// A weld takes up what laws and motors do to a body at rest, and its weight.
+#[test]
+fn a_weld_takes_up_laws_and_motors() {
+    let folder = folder("a_weld_takes_up_laws_and_motors");
+    for held in ["every = 0.02", "at = \"both ends\""] {
+        let text = format!(
+            "title = \"Held\"\ngravity = {{ g = 9.81, up = [0, 0, 1] }}\n[[body]]\nname = \"a\"\nm = 2\nmoments = [1, 2, 2.5]\n\
+             [[joint]]\nkind = \"weld\"\nbodies = [\"space\", \"a\"]\nat = [[0, 0, 0], [0, 0, 0]]\n\
+             [[control]]\ntorque = \"[0.1, -0.2, 0.3] - Omega\"\n{held}\n\
+             [[wheel]]\naxis = [0, 0.6, 0.8]\ninertia = 0.02\nspeed = 30\ntorque = 0.05\n\
+             [run]\nduration = 0.1\nstep = 0.01\n[output]\nevery = 1\ncolumns = [\"velocity\", \"force\", \"torque\"]\n"
+        );
+        for row in rows(&folder, &text) {
+            let expected = [0.0, 0.0, 0.0, 0.0, 0.0, 19.62, -0.1, 0.2 + 0.03, -0.3 + 0.04];
+            let off = row[1..].iter().zip(expected).map(|(own, exact)| (own - exact).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-11, "{held}: {row:?}");
+        }
+    }
 }

@@ -269,6 +269,13 @@ fn bodies_by_their_shapes() {
         cylinder + ball,
         (0.5 * cylinder + 0.4 * ball) * r * r,
     );
+    // Across, each half ball is 83/320 m r² about its own centre of mass.
+    let halves = ball * (83.0 / 320.0 * r * r + (0.5 * l + 0.375 * r) * (0.5 * l + 0.375 * r));
+    is(
+        of("density = 1000\ncapsule = { radius = 0.1, length = 0.6, axis = [1, 0, 0] }"),
+        cylinder + ball,
+        cylinder * (3.0 * r * r + l * l) / 12.0 + halves,
+    );
     is(of("m = 3\nmoments = [1, 1, 1]\nsphere = { radius = 0.5 }"), 3.0, 1.0);
     is(of("m = 3\nmoments = [0, 0, 0]"), 3.0, 0.0);
     // The place of an equation of one angle, by a solver of order eight.

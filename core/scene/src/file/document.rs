@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use liestep::with::Scheme;
 use liestep_derivation::Role;
-use liestep_late::{Declaration, LateError};
+use liestep_late::LateError;
 use serde::Deserialize as _;
 use toml::Spanned;
 use toml::de::{DeValue, Deserializer};
@@ -19,7 +19,7 @@ use crate::file::lagrangian::{DeclaredTerm, take};
 use crate::file::mistake::{Lines, Mistake, SpanMessage};
 use crate::file::odds::{at_odds, of_ends};
 use crate::file::over_time::{self, OverTime};
-use crate::file::pointing::{Pointing, View};
+use crate::file::pointing::Pointing;
 use crate::file::scene::{Origin, Places, SceneFile};
 use crate::file::schedule::{Pace, equal_steps};
 use crate::file::several::several;
@@ -111,14 +111,13 @@ fn observed(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMes
     for pointing in &mut file.pointing {
         pointing.number = number_of(pointing.body.as_ref(), &bodies, &span(document, &["pointing"]))?;
     }
-    let view = file.view();
-    of_pointing(document, &view)?;
-    let columns = view.columns();
+    of_pointing(document, file)?;
+    let columns = file.all_columns();
     let events = document.get_ref().get("event").and_then(|events| events.get_ref().as_array());
-    let of_body = if view.group.is_rotation() { Ok(()) } else { Err(NO_BODY) };
+    let of_body = if file.group.is_rotation() { Ok(()) } else { Err(NO_BODY) };
     for (number, event) in file.event.iter_mut().enumerate() {
         let at = || events.and_then(|events| events.get(number)).map_or(0..0, Spanned::span);
-        event.placed((&columns, &view.group.quaternions), (&bodies, of_body), &at)?;
+        event.placed((&columns, &file.group.quaternions), (&bodies, of_body), &at)?;
     }
     at_odds(document, file).map_or(Ok(()), Err)?;
     file.over_time.iter().find_map(|one| of_signal(one, file)).map_or(Ok(()), Err)?;
@@ -215,20 +214,15 @@ fn add(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMessage>
         return Err((span(document, &[effect.key]), message));
     }
     let Some(DeclaredTerm { declaration, span: first, increments, .. }) = own().next().cloned() else { return Ok(()) };
-    let library = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
-    let lagrangians = file.lagrangian.iter().chain(&file.hamiltonian).map(|own| Ok(own.declaration));
-    let forces = file.force.iter().chain(&file.nonholonomic).map(|own| Ok(own.declaration));
-    let terms = lagrangians.chain(library).chain(forces).collect::<Result<Vec<_>, _>>();
-    let terms = terms.map_err(|error| of_term(&first, error))?;
     let is_other = |one: &&DeclaredTerm| one.declaration.factors != declaration.factors;
     if let Some(one) = own().find(is_other) {
         return Err((one.span.clone(), "the terms of a scene are on one group, and this one is on another".to_owned()));
     }
-    let sum = Declaration::sum(&terms).map_err(|error| of_term(&first, error))?;
-    if !sum.has_kinetic {
+    let sum = file.declared(None).map_err(|error| of_term(&first, error))?;
+    let Some(sum) = sum.filter(|sum| sum.has_kinetic) else {
         let message = "nothing moves by a potential alone: a `lagrangian` has a kinetic energy, or the file a `body`";
         return Err((first, message.to_owned()));
-    }
+    };
     file.group = Group::of(sum, increments).map_err(|error| of_term(&first, error))?;
     file.sum = Some(sum);
     Ok(())
@@ -263,20 +257,20 @@ fn of_signal(one: &OverTime, file: &SceneFile) -> Option<SpanMessage> {
 }
 
 /// Mistakes of the tables `[[pointing]]`.
-fn of_pointing(document: &Document<'_>, view: &View) -> Result<(), SpanMessage> {
+fn of_pointing(document: &Document<'_>, file: &SceneFile) -> Result<(), SpanMessage> {
     let wrong = |message: &str| Err((span(document, &["pointing"]), message.to_owned()));
-    if view.pointing.is_empty() {
+    if file.pointing.is_empty() {
         return Ok(());
     }
-    if !view.group.is_rotation() {
+    if !file.group.is_rotation() {
         return wrong("a `pointing` is that of a body on `SO3`: leave it out on this group");
     }
-    if view.orbit.is_none() && view.pointing.iter().any(Pointing::is_on_orbit) {
+    if file.orbit.is_none() && file.pointing.iter().any(Pointing::is_on_orbit) {
         return wrong("the nadir is that of an orbit, and the file has no table `[orbit]`");
     }
-    let columns = view.columns();
+    let columns = file.all_columns();
     let names: Vec<&str> = columns.iter().flat_map(Column::names).collect();
-    for Pointing { name, .. } in view.pointing.iter() {
+    for Pointing { name, .. } in &file.pointing {
         check_name("a pointing", name).or_else(|message| wrong(&message))?;
         if names.iter().filter(|other| *other == name).count() > 1 {
             return wrong(&format!("`{name}` is the name of another column"));

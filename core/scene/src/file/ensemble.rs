@@ -102,7 +102,7 @@ impl<'a> Parts<'a> {
     fn of(scene: &'a Scene) -> Self {
         let file = &scene.file;
         let (events, changes) = (&file.event, file.changing().is_some());
-        Self { events, changes, first: file.view().first(), is_limited: file.event_names().len() > events.len() }
+        Self { events, changes, first: file.behind_motion(), is_limited: file.event_names().len() > events.len() }
     }
 }
 

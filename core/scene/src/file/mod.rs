@@ -41,4 +41,5 @@ pub(crate) mod system;
 pub(crate) mod tables;
 pub(crate) mod text;
 pub(crate) mod tle;
+pub(crate) mod view;
 pub(crate) mod words;

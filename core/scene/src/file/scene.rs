@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use liestep_late::Declaration;
+use liestep_late::{Declaration, LateError};
 use nalgebra::Matrix3;
 use serde::Deserialize;
 use toml::Spanned;
@@ -13,7 +13,7 @@ use toml::de::{DeValue, Error, ValueDeserializer};
 use crate::file::beginning::Beginning;
 use crate::file::body::{Body, Kinetic};
 use crate::file::column::{Column, Output};
-use crate::file::control::{self, Control, Wheel, entries};
+use crate::file::control::{self, Control, Wheel};
 use crate::file::effects::{self, EFFECTS, EffectEntry, Table, effects};
 use crate::file::event::Event;
 use crate::file::group::Group;
@@ -24,7 +24,7 @@ use crate::file::orbit::{Time, put};
 use crate::file::over_time::OverTime;
 use crate::file::parameter::in_value;
 use crate::file::picture::Picture;
-use crate::file::pointing::{Pointing, View};
+use crate::file::pointing::Pointing;
 use crate::file::quantity::{Rate, in_si, round};
 use crate::file::schedule::{Pace, Schedule};
 use crate::file::system::System;
@@ -172,7 +172,23 @@ impl SceneFile {
 
     /// The terms of the file's own.
     pub(crate) fn own(&self) -> impl Iterator<Item = &DeclaredTerm> {
-        self.lagrangian.iter().chain(&self.hamiltonian).chain(&self.force).chain(&self.nonholonomic)
+        let [before, behind] = self.around();
+        before.chain(behind)
+    }
+
+    /// The terms of the file's own, those before the effects in a sum and those behind.
+    pub(crate) fn around(&self) -> [impl Iterator<Item = &DeclaredTerm>; 2] {
+        [self.lagrangian.iter().chain(&self.hamiltonian), self.force.iter().chain(&self.nonholonomic)]
+    }
+
+    /// The sum of a body's text, if any, and of the file's Lagrangians, effects, forces and constraints, or its Hamiltonian, which is
+    /// derived once per process; none of nothing.
+    pub(crate) fn declared(&self, body: Option<&str>) -> Result<Option<&'static Declaration>, LateError> {
+        let body = body.map(Declaration::parse).into_iter();
+        let [before, behind] = self.around().map(|own| own.map(|own| Ok(own.declaration)));
+        let listed = self.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
+        let terms = body.chain(before).chain(listed).chain(behind).collect::<Result<Vec<_>, _>>()?;
+        if terms.is_empty() { Ok(None) } else { Declaration::sum(&terms).map(Some) }
     }
 
     /// The name of the first force.
@@ -197,19 +213,6 @@ impl SceneFile {
     /// The place of a law that reads the attitude in space where the start is relative to the local vertical.
     pub(crate) fn law_of_no_frame(&self) -> Option<&Range<usize>> {
         control::of_no_frame(&self.control, &self.wheel).filter(|_| self.start.is_relative)
-    }
-
-    /// The numbers that a sample has.
-    pub(crate) fn view(&self) -> View {
-        View {
-            group: self.group.clone(),
-            system: self.system.clone(),
-            orbit: self.orbit,
-            pointing: self.pointing.clone().into(),
-            wheels: self.wheel.clone().into(),
-            controls: self.control.iter().map(|control| control.body).collect(),
-            memory: entries(&self.control, &self.wheel),
-        }
     }
 
     /// A time, s, with the orbit.

@@ -87,8 +87,8 @@ pub(crate) fn several(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -
     let (control, wheel) = (table.control, table.wheel);
     let gravity = table.gravity.map(|field| (field.g.value, field.up.0));
     let system = of_tables((table.body, orbit.is_some()), table.joint, table.spring, places).map_err(located)?;
-    let observed = SceneFile { title, event, run, picture, output, pointing, ..SceneFile::default() };
-    let mut file = SceneFile { gravity_gradient, orbit, control, wheel, ..observed };
+    let observed = SceneFile { title, run, pointing, picture, event, output, ..SceneFile::default() };
+    let mut file = SceneFile { orbit, control, wheel, gravity_gradient, ..observed };
     file.run.count(document).map_err(located)?;
     // Three coordinates of each place are in front.
     let bodies = system.bodies.len();

@@ -1,5 +1,9 @@
 //! The system of a file: its bodies, springs and joints.
 
+use std::cell::RefCell;
+use std::rc::Rc;
+use std::sync::Arc;
+
 use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 use liestep::effects::{Rotor, Torque};
 use liestep::groups::R3;
@@ -10,8 +14,6 @@ use liestep::with::Scheme;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
-use std::sync::Arc;
-
 use crate::file::body::Kinetic;
 use crate::file::control::locked;
 use crate::file::joint::{Joint, Kind};
@@ -19,7 +21,7 @@ use crate::file::orbit::Time;
 use crate::file::part::{Between, SystemBody};
 use crate::file::scene::SceneFile;
 use crate::file::system::{Spring, System};
-use crate::run::devices::{Held, Mechanism};
+use crate::run::devices::{BodyInput, Mechanism};
 use crate::run::nearest::BodyState;
 
 /// A body with its weight. One of the three kinetic terms has the factor one, the others zero.
@@ -148,7 +150,13 @@ impl System {
     }
 
     /// Adds what acts on the bodies of a file at a time, with what is held.
-    fn act(&self, file: &SceneFile, system: &mut Multibody, now: Time<'_>, held: &[Held]) -> Result<(), SetupError> {
+    fn act(
+        &self,
+        file: &SceneFile,
+        system: &mut Multibody,
+        now: Time<'_>,
+        held: &[BodyInput],
+    ) -> Result<(), SetupError> {
         for (number, body) in self.bodies.iter().enumerate() {
             let J = match &body.J {
                 Some(J) => locked(J, &file.wheel, number),
@@ -166,7 +174,7 @@ impl System {
                     system.on(number, turning);
                 }
             }
-            let Held { spin, torque } = held.get(number).copied().unwrap_or_default();
+            let BodyInput { spin, torque } = held.get(number).copied().unwrap_or_default();
             if spin != Vector3::zeros() {
                 system.on(number, Rotor { spin });
             }
@@ -247,43 +255,67 @@ fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) 
 }
 
 /// Several bodies with laws and wheels, or along an orbit.
-pub(crate) struct Driven {
+pub(crate) struct Bodies {
     file: SceneFile,
     system: Arc<System>,
     joined: Multibody,
     /// The stepper at the time zero.
     first: MultibodyStepper,
+    /// The last stepper, with its time and what was held.
+    last: RefCell<Option<LastStepper>>,
 }
 
-impl Driven {
+/// A stepper with its span of time, s, and what is held in it.
+type LastStepper = ([f64; 2], Vec<BodyInput>, Rc<MultibodyStepper>);
+
+impl Bodies {
     /// The bodies of a file, with steps of `h`, s.
     pub(crate) fn new(file: &SceneFile, system: &Arc<System>, h: f64) -> Result<Self, SetupError> {
         let (first, _) = system.multibody(file, Scheme::Step, h)?;
-        Ok(Self { file: file.clone(), system: Arc::clone(system), joined: system.joined()?.0, first })
+        Ok(Self {
+            file: file.clone(),
+            system: Arc::clone(system),
+            joined: system.joined()?.0,
+            first,
+            last: RefCell::default(),
+        })
     }
 }
 
-impl Mechanism for Driven {
-    type Numbers = MultibodyStepper;
+impl Mechanism for Bodies {
+    type Numbers = Rc<MultibodyStepper>;
 
     fn layout(&self) -> &Layout {
         self.first.layout()
     }
 
-    fn numbers(&self, [start, length]: [f64; 2], held: &[Held]) -> Option<MultibodyStepper> {
+    fn numbers(&self, [start, length]: [f64; 2], held: &[BodyInput]) -> Option<Rc<MultibodyStepper>> {
+        let mut last = self.last.borrow_mut();
+        if let Some((span, known, stepper)) = &*last
+            && (span, &known[..]) == (&[start, length], held)
+        {
+            return Some(Rc::clone(stepper));
+        }
         let mut system = self.joined.clone();
         self.system.act(&self.file, &mut system, self.file.at(start + length * 0.5), held).ok()?;
-        system.stepper(if length == 0.0 { self.first.step_size() } else { length }).ok()
+        let stepper = Rc::new(system.stepper(if length == 0.0 { self.first.step_size() } else { length }).ok()?);
+        *last = Some(([start, length], held.to_vec(), Rc::clone(&stepper)));
+        Some(stepper)
     }
 
-    fn start(&self, stepper: &MultibodyStepper, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
-        Propagator::start(stepper, attitude, velocity)
+    fn start(
+        &self,
+        stepper: &Rc<MultibodyStepper>,
+        attitude: &[f64],
+        velocity: &[f64],
+    ) -> Result<Box<[f64]>, SetupError> {
+        Propagator::start(&**stepper, attitude, velocity)
     }
 
     fn step(
         &self,
         _: usize,
-        stepper: &MultibodyStepper,
+        stepper: &Rc<MultibodyStepper>,
         _: f64,
         state: &mut Vec<f64>,
     ) -> Result<StepReport, StepError> {
@@ -293,18 +325,22 @@ impl Mechanism for Driven {
         Ok(report)
     }
 
-    fn velocity(&self, stepper: &MultibodyStepper, state: &[f64]) -> Vec<f64> {
+    fn velocity(&self, stepper: &Rc<MultibodyStepper>, state: &[f64]) -> Vec<f64> {
         let mut velocity = vec![0.0; self.layout().components()];
-        Propagator::velocity(stepper, state, &mut velocity);
+        Propagator::velocity(&**stepper, state, &mut velocity);
         velocity
     }
 
-    fn energy(&self, stepper: &MultibodyStepper, state: &[f64]) -> f64 {
+    fn energy(&self, stepper: &Rc<MultibodyStepper>, state: &[f64]) -> f64 {
         stepper.energy(state)
     }
 
-    fn push(&self, stepper: &MultibodyStepper, state: &mut [f64], impulses: &[f64]) -> Result<(), StepError> {
+    fn push(&self, stepper: &Rc<MultibodyStepper>, state: &mut [f64], impulses: &[f64]) -> Result<(), StepError> {
         stepper.push(state, &impulses.chunks(6).map(Vector6::from_column_slice).collect::<Vec<_>>())
+    }
+
+    fn project(&self, stepper: &Rc<MultibodyStepper>, state: &mut [f64]) -> Result<(), StepError> {
+        stepper.push(state, &vec![Vector6::zeros(); stepper.bodies()])
     }
 
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]) {
@@ -315,11 +351,11 @@ impl Mechanism for Driven {
         self.first.defect(state)
     }
 
-    fn gap(&self, stepper: &MultibodyStepper, state: &[f64]) -> f64 {
-        stepper.widest_gap(state)
+    fn gap(&self, state: &[f64]) -> f64 {
+        self.first.widest_gap(state)
     }
 
-    fn joint_forces(&self, stepper: &MultibodyStepper, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+    fn joint_forces(&self, stepper: &Rc<MultibodyStepper>, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
         stepper.joint_forces(&stepper.adopt(state))
     }
 }

@@ -9,8 +9,8 @@ use liestep::{SO3, recording};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::file::event::{Direction, Event, Quantity};
-use crate::file::pointing::View;
 use crate::file::sample::{BodySample, Sample};
+use crate::file::scene::SceneFile;
 use crate::run::make::Watch;
 use crate::run::motors::ENTRIES;
 use crate::run::moving::Sampler;
@@ -26,12 +26,12 @@ fn rate(now: &Moment<'_, AnyStepper>, body: usize) -> Vector3<f64> {
     Vector3::from_column_slice(&now.velocity()[6 * body..][..3])
 }
 
-/// The sample of a scene with these numbers at this moment.
-pub(crate) fn sample(view: &View, now: &Moment<'_, AnyStepper>) -> Sample {
-    if let Some(system) = &view.system {
-        return of_bodies(system, view, now);
+/// The sample of a scene at this moment.
+pub(crate) fn sample(file: &SceneFile, now: &Moment<'_, AnyStepper>) -> Sample {
+    if let Some(system) = &file.system {
+        return of_bodies(system, file, now);
     }
-    let group = &view.group;
+    let group = &file.group;
     let (time, energy, gap, momentum) = (now.time(), now.energy(), 0.0, nalgebra::zero());
     let quaternions = Arc::clone(&group.quaternions);
     if group.is_rotation() {
@@ -40,7 +40,7 @@ pub(crate) fn sample(view: &View, now: &Moment<'_, AnyStepper>) -> Sample {
         let vectors = [body.velocity, body.momentum, angular_momentum];
         let vectors = vectors.iter().flat_map(Vector3::as_slice);
         let ends = [energy, body.attitude.defect()];
-        let seen = view.numbers(&[body], (time, now.numbers()));
+        let seen = file.numbers(&[body], (time, now.numbers()));
         let numbers = body.quaternion.iter().chain(vectors).chain(&ends).chain(&seen).copied().collect();
         return Sample { time, energy, momentum, angular_momentum, gap, bodies: vec![body], numbers, quaternions };
     }

@@ -20,7 +20,7 @@ pub type Whole = liestep_late::Whole<Backend>;
 /// A library body by its text, with its parameters.
 #[derive(Clone)]
 pub(crate) struct LibraryBody {
-    text: &'static str,
+    pub(crate) text: &'static str,
     numbers: Vec<f64>,
 }
 
@@ -42,19 +42,6 @@ impl LibraryBody {
     }
 }
 
-/// The sum of this body, if any, and of the file's Lagrangians, effects, forces and constraints, or its Hamiltonian, which is
-/// derived once per process.
-fn sum(file: &SceneFile, body: Option<&LibraryBody>) -> Result<Option<&'static Declaration>, LateError> {
-    let body = body.map(|body| Declaration::parse(body.text)).into_iter();
-    let [lagrangians, hamiltonians, forces, constraints] =
-        [&file.lagrangian, &file.hamiltonian, &file.force, &file.nonholonomic]
-            .map(|own| own.iter().map(|own| Ok(own.declaration)));
-    let listed = file.effects().map(|(effect, _)| Declaration::parse(effect.derived.1));
-    let own = body.chain(lagrangians).chain(hamiltonians);
-    let terms = own.chain(listed).chain(forces).chain(constraints).collect::<Result<Vec<_>, _>>()?;
-    if terms.is_empty() { Ok(None) } else { Declaration::sum(&terms).map(Some) }
-}
-
 /// A scene whose step is data: the sum of all terms, on any group.
 #[derive(Clone)]
 pub(crate) struct Data {
@@ -65,7 +52,8 @@ pub(crate) struct Data {
 impl Data {
     pub(crate) fn of(file: &SceneFile, J: &Inertia) -> Result<Self, Stop> {
         let body = LibraryBody::of(file, *J);
-        let sum = sum(file, body.as_ref()).map_err(|error| late_error(&error))?.ok_or_else(nothing)?;
+        let sum = file.declared(body.as_ref().map(|body| body.text));
+        let sum = sum.map_err(|error| late_error(&error))?.ok_or_else(nothing)?;
         let numbers = sum
             .described(&numbers(file, [J, &locked(J, &file.wheel, 0)], body.as_ref(), 0.0))
             .map_err(|error| late_error(&error))?;
@@ -89,13 +77,11 @@ pub(crate) fn inertia(file: &SceneFile) -> Result<Inertia, Stop> {
 
 /// The parameters of all terms at a time, in order; the second inertia is that with the wheels.
 pub(crate) fn numbers(file: &SceneFile, [J, whole]: [&Inertia; 2], body: Option<&LibraryBody>, time: f64) -> Vec<f64> {
-    let [lagrangians, hamiltonians, forces, constraints] =
-        [&file.lagrangian, &file.hamiltonian, &file.force, &file.nonholonomic]
-            .map(|own| own.iter().flat_map(|own| own.numbers.iter().copied()));
+    let [before, behind] = file.around().map(|own| own.flat_map(|own| own.numbers.iter().copied()));
     let body = body.iter().flat_map(|body| body.numbers.iter().copied());
     let of = |key: &str| if key == "gravity_gradient" { whole } else { J };
     let listed = file.effects().flat_map(|(effect, table)| table.numbers(of(effect.key), file.at(time)));
-    body.chain(lagrangians).chain(hamiltonians).chain(listed).chain(forces).chain(constraints).collect()
+    body.chain(before).chain(listed).chain(behind).collect()
 }
 
 pub(crate) fn late_error(error: &LateError) -> Stop {

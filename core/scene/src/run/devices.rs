@@ -5,14 +5,14 @@ use liestep::motion::{Layout, Propagator, StepReport};
 use liestep::{SetupError, StepError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
-use crate::file::control::{Controller, Motor, Seen, Wheel, entries, fit, readings, stride};
+use crate::file::control::{Control, Controller, Motor, Seen, Wheel, entries, fit, readings, stride};
 use crate::file::law::{Value, within};
 use crate::file::orbit::Time;
 use crate::file::scene::SceneFile;
 
 /// The spin of a body's wheels and the torque on it in a step, body frame, kg m²/s and N m.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct Held {
+#[derive(Clone, Copy, Default, PartialEq)]
+pub(crate) struct BodyInput {
     pub(crate) spin: Vector3<f64>,
     pub(crate) torque: Vector3<f64>,
 }
@@ -25,7 +25,7 @@ pub(crate) trait Mechanism {
     fn layout(&self) -> &Layout;
 
     /// The numbers of a step of this start and length, s, with the length zero those of a time; none where one isn't finite.
-    fn numbers(&self, span: [f64; 2], held: &[Held]) -> Option<Self::Numbers>;
+    fn numbers(&self, span: [f64; 2], held: &[BodyInput]) -> Option<Self::Numbers>;
 
     fn start(&self, numbers: &Self::Numbers, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError>;
 
@@ -45,11 +45,16 @@ pub(crate) trait Mechanism {
     /// Adds impulses to the momenta of the bodies, N m s in the body frame and N s in space.
     fn push(&self, numbers: &Self::Numbers, state: &mut [f64], impulses: &[f64]) -> Result<(), StepError>;
 
+    /// Projects momenta onto those whose velocities keep joints closed: a step does so with other numbers than those of its end.
+    fn project(&self, _: &Self::Numbers, _state: &mut [f64]) -> Result<(), StepError> {
+        Ok(())
+    }
+
     fn spatial_momentum(&self, state: &[f64], momentum: &mut [f64]);
 
     fn defect(&self, state: &[f64]) -> f64;
 
-    fn gap(&self, _numbers: &Self::Numbers, _state: &[f64]) -> f64 {
+    fn gap(&self, _state: &[f64]) -> f64 {
         0.0
     }
 
@@ -159,19 +164,25 @@ impl<M: Mechanism> Devices<M> {
         Vector3::from_column_slice(of_body).dot(&wheel.axis)
     }
 
+    /// What acts on each body with momenta of the wheels and torques of these laws.
+    fn inputs<'t>(
+        &self,
+        momenta: &[f64],
+        torques: impl Iterator<Item = (&'t Control, &'t Vector3<f64>)>,
+    ) -> Vec<BodyInput> {
+        let mut inputs = vec![BodyInput::default(); self.bodies];
+        for (wheel, momentum) in self.file.wheel.iter().zip(momenta) {
+            inputs[wheel.body].spin += wheel.axis * *momentum;
+        }
+        torques.for_each(|(control, torque)| inputs[control.body].torque += torque);
+        inputs
+    }
+
     /// The numbers of a step of this start and length with momenta of the wheels and held torques; with the length zero
     /// those of a time.
     fn numbers(&self, span: [f64; 2], momenta: &[f64], torques: &[Vector3<f64>]) -> Result<M::Numbers, StepError> {
-        let mut held = vec![Held::default(); self.bodies];
-        for (wheel, momentum) in self.file.wheel.iter().zip(momenta) {
-            held[wheel.body].spin += wheel.axis * *momentum;
-        }
-        for (control, torque) in self.file.control.iter().zip(torques) {
-            if !control.controller.is_at_ends {
-                held[control.body].torque += torque;
-            }
-        }
-        self.mechanism.numbers(span, &held).ok_or(OF_A_LAW)
+        let held = self.file.control.iter().zip(torques).filter(|(control, _)| !control.controller.is_at_ends);
+        self.mechanism.numbers(span, &self.inputs(momenta, held)).ok_or(OF_A_LAW)
     }
 
     /// The numbers of a state's time.
@@ -328,6 +339,10 @@ impl<M: Mechanism> Devices<M> {
             begin += share;
         }
         memory.momenta = memory.after(&motors, length);
+        if !motors.is_empty() {
+            let end = self.numbers([now + length, 0.0], &memory.momenta, &memory.torques)?;
+            self.mechanism.project(&end, &mut next)?;
+        }
         Ok((next, memory, StepReport::of(iterations)))
     }
 }
@@ -469,17 +484,18 @@ impl<M: Mechanism> Propagator for Devices<M> {
     }
 
     fn gap(&self, state: &[f64]) -> f64 {
-        let gap = self.layout.checked(state).and_then(|state| {
-            let (inner, memory) = self.parts(state);
-            Ok(self.mechanism.gap(&self.now(state, &memory)?, &inner))
-        });
-        gap.unwrap_or(f64::NAN)
+        self.layout.checked(state).map_or(f64::NAN, |state| self.mechanism.gap(&self.parts(state).0))
     }
 
     fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
         let (inner, memory, motors) = self.sampled(self.layout.checked(state)?, self.h)?;
-        let span = [self.time(state), self.h];
-        let numbers = self.numbers(span, &memory.after(&motors, self.h * 0.5), &memory.torques)?;
+        // What changes momenta at the ends of the step acts in it here: laws there as at its beginning, and the motors of wheels.
+        let all = self.file.control.iter().zip(&memory.torques);
+        let mut inputs = self.inputs(&memory.after(&motors, self.h * 0.5), all);
+        for (wheel, torque) in self.file.wheel.iter().zip(&motors) {
+            inputs[wheel.body].torque -= wheel.axis * *torque;
+        }
+        let numbers = self.mechanism.numbers([self.time(state), self.h], &inputs).ok_or(OF_A_LAW)?;
         self.mechanism.joint_forces(&numbers, &inner)
     }
 }

@@ -7,7 +7,7 @@ use crate::run::make::Run;
 impl Scene {
     /// The columns of the deviations from what is conserved.
     fn errors(&self) -> Vec<Column> {
-        let mut all = self.file.view().columns();
+        let mut all = self.file.all_columns();
         all.retain(|column| ["energy-error", "momentum-error"].contains(&column.key()));
         all
     }

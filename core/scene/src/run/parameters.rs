@@ -10,7 +10,7 @@ use liestep_late::{Course, Declaration};
 use crate::file::control::locked;
 use crate::file::scene::SceneFile;
 use crate::run::data::{LibraryBody, Whole, numbers};
-use crate::run::devices::{Held, Mechanism};
+use crate::run::devices::{BodyInput, Mechanism};
 
 /// The terms of a file, whose numbers are found at any time.
 pub(crate) struct Parameters {
@@ -29,7 +29,7 @@ impl Parameters {
 
     /// The numbers of a step of this start and length, s, or with the length zero of a time, with further spin and torque where
     /// the file has a rotor and a torque.
-    fn numbers(&self, [start, length]: [f64; 2], held: &Held) -> Option<Vec<f64>> {
+    fn numbers(&self, [start, length]: [f64; 2], held: &BodyInput) -> Option<Vec<f64>> {
         let mut file = self.file.borrow_mut();
         let is_known = file.set_over([start, length]);
         let (rotor, torque) = (file.rotor, file.torque);
@@ -48,7 +48,7 @@ impl Course for Parameters {
     }
 
     fn over(&self, span: [f64; 2], places: &mut [f64]) {
-        match self.numbers(span, &Held::default()) {
+        match self.numbers(span, &BodyInput::default()) {
             Some(now) => places.copy_from_slice(&now),
             None => places.fill(f64::NAN),
         }
@@ -78,7 +78,7 @@ impl Mechanism for OneBody {
         &self.layout
     }
 
-    fn numbers(&self, span: [f64; 2], held: &[Held]) -> Option<Vec<f64>> {
+    fn numbers(&self, span: [f64; 2], held: &[BodyInput]) -> Option<Vec<f64>> {
         let numbers = self.parameters.numbers(span, held.first()?)?;
         numbers.iter().all(|number| number.is_finite()).then_some(numbers)
     }

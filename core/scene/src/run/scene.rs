@@ -90,7 +90,7 @@ impl Scene {
     /// The numbers of these columns at a moment, one after the other. The sign of a quaternion is arbitrary.
     #[must_use]
     pub fn numbers(&self, columns: &[Column], now: &Moment<'_, AnyStepper>) -> Vec<f64> {
-        let now = sample(&self.file.view(), now);
+        let now = sample(&self.file, now);
         Column::row(columns, &now, &now)
     }
 

@@ -10,7 +10,6 @@ use liestep::{SetupError, StepError};
 
 use crate::file::body::Kinetic;
 use crate::file::mistake::Mistake;
-use crate::file::pointing::at_the_end;
 use crate::file::quantity::short;
 use crate::file::sample::Sample;
 use crate::file::scene::{Origin, SceneFile};
@@ -58,8 +57,8 @@ impl SceneFile {
     }
 
     pub(crate) fn sampler(&self) -> Sampler {
-        let view = self.view();
-        Arc::new(move |now: &Moment<'_, AnyStepper>| sample(&view, now))
+        let file = self.clone();
+        Arc::new(move |now: &Moment<'_, AnyStepper>| sample(&file, now))
     }
 
     /// The events that a run detects.
@@ -147,8 +146,6 @@ impl SceneFile {
         let unit = if self.group.is_rotation() { " kg m²/s" } else { "" };
         let norm = |sample: &Sample| sample.numbers[self.group.in_space()].iter().map(|part| part * part).sum::<f64>();
         let [before, after] = ends.map(|sample| short(norm(sample).sqrt()));
-        let body = ends[1].bodies.first().map(|body| (body.quaternion, body.velocity));
-        let end = body.map(|body| at_the_end(&self.view(), body, &ends[1].numbers)).unwrap_or_default();
-        format!(", momentum {before} → {after}{unit}{end}")
+        format!(", momentum {before} → {after}{unit}{}", self.last_state(ends[1]))
     }
 }

@@ -13,12 +13,11 @@ use nalgebra::{Matrix3, Vector3};
 use crate::file::body::Kinetic;
 use crate::file::joint::{Joint, Limits};
 use crate::file::part::{Between, SystemBody};
-use crate::file::pointing::View;
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
-use crate::run::bodies::Driven;
+use crate::run::bodies::Bodies;
 use crate::run::choose::shares;
 use crate::run::devices::Devices;
 use crate::run::make::{Note, Place, Run, Stop, Watch, fast_turn, told};
@@ -52,7 +51,7 @@ fn beyond(joint: &Between<Joint>, limits: Limits, state: &[f64]) -> f64 {
 
 /// The bodies at this moment, with the numbers of all columns; forces and torques of joints, for which a step is made, only
 /// where they are asked for.
-pub(crate) fn of_bodies(system: &System, view: &View, now: &Moment<'_, AnyStepper>) -> Sample {
+pub(crate) fn of_bodies(system: &System, file: &SceneFile, now: &Moment<'_, AnyStepper>) -> Sample {
     let mut sample = bodies_at(system.bodies.len(), now);
     let Sample { bodies, energy, momentum, angular_momentum, gap, .. } = &sample;
     let mut numbers: Vec<f64> = Vec::new();
@@ -69,7 +68,7 @@ pub(crate) fn of_bodies(system: &System, view: &View, now: &Moment<'_, AnySteppe
     numbers.extend(turning.map(|(_, sign, [angle, _])| sign * angle));
     let shifting = coordinates.iter().filter(|(kind, ..)| kind.shifts_along_axis());
     numbers.extend(shifting.map(|(_, sign, [_, shift])| sign * shift));
-    numbers.extend(view.numbers(bodies, (now.time(), now.numbers())));
+    numbers.extend(file.numbers(bodies, (now.time(), now.numbers())));
     if system.has_reactions {
         let none = || vec![[Vector3::repeat(f64::NAN); 2]; system.joints.len()];
         let forces = now.integrator().joint_forces(now).unwrap_or_else(|_| none());
@@ -80,7 +79,7 @@ pub(crate) fn of_bodies(system: &System, view: &View, now: &Moment<'_, AnySteppe
             numbers.extend(&(torque - arm.cross(force)));
         }
     }
-    sample.quaternions = Arc::clone(&view.group.quaternions);
+    sample.quaternions = Arc::clone(&file.group.quaternions);
     sample.numbers = numbers;
     sample
 }
@@ -128,7 +127,7 @@ impl System {
         let start = if is_driven {
             let (layout, mut velocity) = (stepper.layout(), vec![0.0; stepper.layout().components()]);
             Propagator::velocity(&stepper, &state, &mut velocity);
-            let bodies = Driven::new(file, self, step).map_err(Stop::Setup)?;
+            let bodies = Bodies::new(file, self, step).map_err(Stop::Setup)?;
             let driven = Devices::new(file.clone(), (bodies, self.bodies.len()), (step, shares(file)));
             let any = AnyStepper::new(driven.map_err(Stop::Setup)?);
             let state = any.start(&state[layout.attitude()], &velocity).map_err(Stop::Start)?;

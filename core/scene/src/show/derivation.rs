@@ -5,13 +5,13 @@ use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody,
 use liestep::mechanics::Effect;
 use liestep_late::{Declaration, LateError};
 
-use crate::file::body::{Distribution, Kinetic};
 use crate::file::effects::{EFFECTS, EffectEntry};
 use crate::file::joint::{Joint, Kind};
 use crate::file::kinds::Scene;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::bodies::{Coil, Cord, HeavyBody, Tide};
+use crate::run::data::LibraryBody;
 use crate::run::model::Model;
 
 /// A term's derivation, and the text of its declaration.
@@ -135,14 +135,9 @@ impl SceneFile {
 
     /// The names of the body and the effects.
     fn terms(&self) -> impl Iterator<Item = String> {
-        let body = self.body.map(|body| match (body.kinetic, body.mass) {
-            (Kinetic::Rigid, Distribution::Principal(_)) => "principal-body",
-            (Kinetic::Rigid, Distribution::Full(_)) => "rigid-body",
-            (Kinetic::Cayley, _) => "cayley-body",
-            (Kinetic::Geodesic, _) => "geodesic-body",
-            (Kinetic::FourthOrder, _) => "fourth-order-body",
-            (Kinetic::SixthOrder, _) => "sixth-order-body",
-        });
+        let body = self.body.and_then(|body| LibraryBody::of(self, body.J));
+        let body =
+            body.and_then(|body| KINETIC.iter().find(|(_, (_, text))| *text == body.text).map(|(name, _)| *name));
         body.map(str::to_owned).into_iter().chain(self.effects().map(|(effect, _)| effect.name("-")))
     }
 }

@@ -129,12 +129,11 @@ impl Recording {
 
     fn of(scene: &SceneFile, run: &Run) -> Self {
         let samples = run.samples();
-        let figures = match &scene.system {
-            Some(system) => figures_of(system),
-            None => {
-                let arm = scene.gravity.map(|gravity| gravity.rho.value);
-                vec![(String::new(), Figure::of(&scene.inertia().unwrap_or_else(Matrix3::identity), arm))]
-            }
+        let figures = if let Some(system) = &scene.system {
+            figures_of(system)
+        } else {
+            let arm = scene.gravity.map(|gravity| gravity.rho.value);
+            vec![(String::new(), Figure::of(&scene.inertia().unwrap_or_else(Matrix3::identity), arm))]
         };
         // None on a group without a body.
         let shown = samples.first().map_or(0, |sample| sample.bodies.len());
@@ -155,7 +154,7 @@ impl Recording {
             rods: rods.flatten().collect(),
             times: samples.iter().map(|sample| sample.time).collect(),
             charts: match &scene.system {
-                Some(system) => charts_of_system(system, &scene.view().columns(), samples),
+                Some(system) => charts_of_system(system, &scene.all_columns(), samples),
                 None => charts(scene, &bodies, samples),
             },
             bodies,
@@ -195,7 +194,7 @@ fn charts(scene: &SceneFile, bodies: &[ShownBody], samples: &[Sample]) -> Vec<Ch
         let rates = rates([0, 1, 2].map(|k| collect(&|sample| sample.bodies[0].velocity[k])));
         return vec![tilt(&body.attitudes, &scene.picture.axis.0), energy, momentum_error(&momentum), rates];
     }
-    let columns = scene.view().columns();
+    let columns = scene.all_columns();
     let chart = |title, key| Chart::linear(title, "", lines_of(&columns, key, samples, 1.0));
     vec![
         chart("Attitude", "attitude"),
