@@ -132,7 +132,7 @@ struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>> {
     cost: &'a mut CostOf<'b, S>,
 }
 
-/// The derivatives of a state's cost. It has no type of its own in a pass, which is compiled once for all costs.
+/// The derivatives of a state's cost, without a type of their own: a pass is compiled once for all costs.
 type CostOf<'a, S> = dyn FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>> + 'a;
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Stretch<'_, '_, S, P> {
@@ -301,11 +301,13 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
             .try_reserve(usize::try_from(length).unwrap_or(usize::MAX).saturating_mul(self.stepper.plan.stages()));
         let events = RefCell::new(events);
         let mut made = 0;
-        // All stretches but the last are stepped through without recording.
+        // All stretches but the last are stepped through first.
         while steps - made > length {
             starts.push((made, end));
             for _ in 0..length {
-                self.stepper.step_given(&mut end, given.input(made))?;
+                // The record is dropped, as steps without one would be compiled for all inputs again.
+                self.recorded_given(&mut end, given.input(made), &events, [false; 2])?;
+                events.borrow_mut().clear();
                 made += 1;
             }
         }

@@ -336,8 +336,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
     }
 }
 
-/// A step whose stages are recorded. It is inlined into its caller, and so it is compiled here alone, for all derivatives
-/// and inputs.
+/// A step whose stages are recorded, compiled once for all derivatives and inputs, as it is inlined where it is called.
 struct StepRecord<'a, S: SecondDerivatives, P: Linearisable<S>> {
     stepper: &'a Stepper<S, P>,
     state: &'a mut StateOf<S, P>,
@@ -348,8 +347,8 @@ struct StepRecord<'a, S: SecondDerivatives, P: Linearisable<S>> {
 impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for StepRecord<'_, S, P> {
     type Output = Result<StepReport, StepError>;
 
-    /// The registers of the passes over the stages.
-    const VECTORS: Vectors = Vectors::Four;
+    /// The registers of a step without a record.
+    const VECTORS: Vectors = P::VECTORS;
     const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
