@@ -188,9 +188,7 @@ where
         }
         let report = work.join().map_err(|_| Failure::Of("StoreError", "a thread has come to no end".to_owned()))?;
         match raised {
-            Some(error) => {
-                Err(Failure::Raised(Python::attach(|py| interrupted(py, error, &report, &plan.folder))))
-            }
+            Some(error) => Err(Failure::Raised(Python::attach(|py| interrupted(py, error, &report, &plan.folder)))),
             None => report.map_err(|error| store_error(&error)),
         }
     })
@@ -202,7 +200,9 @@ fn interrupted(py: Python<'_>, error: PyErr, report: &Result<Report, StoreError>
         Ok(Report { chunks, missing, .. }) if error.is_instance_of::<PyKeyboardInterrupt>(py) => {
             let there = chunks - missing;
             let folder = folder.display();
-            PyKeyboardInterrupt::new_err(format!("{there} of {chunks} chunks are kept in {folder}; the same `run` goes on there"))
+            PyKeyboardInterrupt::new_err(format!(
+                "{there} of {chunks} chunks are kept in {folder}; the same `run` goes on there"
+            ))
         }
         _ => error,
     }

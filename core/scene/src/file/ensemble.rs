@@ -85,8 +85,9 @@ fn identity(text: &str, file: Option<&SceneFile>) -> String {
         let over_time = file.over_time.iter().filter_map(|one| one.signal().cloned());
         over_time.chain(file.wheel.iter().filter_map(of_wheel))
     });
-    let signals: String = signals.map(|signal| format!("\n# {signal:?}")).collect();
-    format!("{values}{signals}")
+    let mut identity = values.to_string();
+    identity.extend(signals.map(|signal| format!("\n# {signal:?}")));
+    identity
 }
 
 /// The parts of a scene by which members have columns and events, or not.
