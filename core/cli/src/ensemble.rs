@@ -214,8 +214,7 @@ fn told_of(scene: &Scene, drawn: &SceneEnsemble, report: &Report, (is_share, fol
         scene.title(),
         counts(&report.outcome)
     );
-    let is_whole = report.missing == 0;
-    if is_whole && report.outcome.finished > 0 {
+    if !is_share && report.outcome.finished > 0 {
         let _ =
             writeln!(text, "  {:<20}{:>16}{:>16}{:>16}{:>16}", "at the end", "mean", "deviation", "least", "largest");
         for (_, _, name) in columns(drawn) {
@@ -231,7 +230,7 @@ fn told_of(scene: &Scene, drawn: &SceneEnsemble, report: &Report, (is_share, fol
             }
         }
     }
-    if is_whole {
+    if !is_share {
         let events = scene.events().zip(&report.outcome.passages);
         text.extend(events.map(|(name, passages)| of_event(name, &report.outcome, passages)));
     }

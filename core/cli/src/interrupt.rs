@@ -1,18 +1,14 @@
-//! Ctrl-C: the first one stops an ensemble at its next steps, the second one ends the program.
+//! Ctrl-C, which stops an ensemble at its next steps.
 
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use signal_hook::consts::SIGINT;
-use signal_hook::flag::{register, register_conditional_shutdown};
+use signal_hook::flag::register;
 
-/// The exit code of a program that Ctrl-C has ended.
-pub(crate) const CODE: i32 = 130;
-
-/// Sets `stop` by the first Ctrl-C from now on. The program ends by a second one, or by the first one if it is set already.
+/// Sets `stop` by Ctrl-C from now on.
 pub(crate) fn sets(stop: &Arc<AtomicBool>) -> io::Result<()> {
-    register_conditional_shutdown(SIGINT, CODE, Arc::clone(stop))?;
     register(SIGINT, Arc::clone(stop)).map(drop)
 }
 

@@ -1,5 +1,7 @@
 //! A table of numbers, as it is printed.
 
+use std::fmt::Write as _;
+
 /// The most rows that are printed, and the most columns of letters.
 const ROWS: usize = 40;
 const WIDTH: usize = 110;
@@ -19,14 +21,17 @@ pub(crate) fn printed(head: &[&str], rows: &[Vec<String>], file: &str) -> String
     });
     let columns = ends.take_while(|end| *end <= WIDTH).count().max(1);
     let line = |cells: &mut dyn Iterator<Item = &str>| {
-        let padded: String = cells.zip(&widths[..columns]).map(|(cell, width)| format!("{cell:>width$}")).collect();
+        let mut padded = String::new();
+        for (cell, width) in cells.zip(&widths[..columns]) {
+            let _ = write!(padded, "{cell:>width$}");
+        }
         padded.trim_end().to_owned() + "\n"
     };
     let mut text = line(&mut head.iter().copied());
     text.extend(shown.iter().map(|row| line(&mut row.iter().map(String::as_str))));
     let (more_rows, more_columns) = (rows.len() - shown.len(), head.len() - columns);
     if more_rows + more_columns > 0 {
-        text += &format!("  {more_rows} more rows and {more_columns} more columns are in {file}\n");
+        let _ = writeln!(text, "  {more_rows} more rows and {more_columns} more columns are in {file}");
     }
     text
 }

@@ -68,7 +68,7 @@
 //!
 //! # Size of chunks
 //!
-//! A kill loses the chunks in progress, and each chunk costs two writes to the disk: a second's work is a good size. By
-//! default the first chunks have a few members, and later ones more and more, [up to that](crate::Ensemble::chunks_of). The
-//! number of threads is of no matter, and neither is that of members, so that a folder may grow by more of them. A chunk
-//! has one member if members take minutes.
+//! A kill loses the chunks in progress, and each chunk costs two writes to the disk: a second's work is a good size. The
+//! first chunks have a few members, and later ones more and more, [up to that](crate::Ensemble::chunks_of). The number of
+//! threads is of no matter, and neither is that of members, so that a folder may grow by more of them. A chunk has one
+//! member if members take minutes.

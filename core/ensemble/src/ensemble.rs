@@ -167,7 +167,7 @@ impl<M: Integrator> Ensemble<M> {
 
     /// Sets the number of members of a chunk, the unit of work of one worker and the content of one file.
     ///
-    /// By default chunks grow: the first have as many members as lanes, or one, and their size doubles after 16 chunks; from
+    /// Default chunks grow: the first have as many members as lanes, or one, and their size doubles after 16 chunks; from
     /// a 32nd of a second's work of one core on, by the [cost](Integrator::cost) of a step of the method, after 64; from a
     /// second's work on after 1024; up to a million rows. So all cores and all shares have some, and very many members go
     /// to a few thousand files. A member is in the same chunk on every machine, and whatever the number of members.

@@ -86,8 +86,8 @@ impl<M: Integrator> Plan for Ensemble<M> {
 }
 
 impl<M: Integrator> Ensemble<M> {
-    /// The shards in a folder, one after another in the order of their chunks, and the faults of other files. Of a shard with
-    /// more members than this plan has, which is one of a plan of more, this plan's members are computed.
+    /// The shards in a folder, one after another in the order of their chunks, and the faults of other files. A shard of a
+    /// plan of more members may have some that this plan hasn't: then its first members are computed.
     ///
     /// # Errors
     ///

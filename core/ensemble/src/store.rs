@@ -278,8 +278,8 @@ impl Store {
     }
 
     /// The chunks whose members exist, by the names of their files, and the faults of other files. All files of a chunk with
-    /// two of the same members are read. Of the share's own chunks the heads of the first, the middle and the last one
-    /// are read, to check the plan, or all files if [verified](Self::verified).
+    /// two of the same members are read. The heads of the share's first, middle and last own chunks are read, to
+    /// check the plan, or all of its files if [verified](Self::verified).
     pub(crate) fn look(
         &self,
         plan: &dyn Plan,

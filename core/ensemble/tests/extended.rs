@@ -10,8 +10,11 @@ use nalgebra::Vector3;
 use super::common::{Folder, Top, contents, top, tops, with_columns};
 use super::{STEPS, run, shards};
 
+/// The plan for a number of members.
+type Plan<'a> = &'a dyn Fn(u64) -> Ensemble<Top>;
+
 /// The files and the report of a folder in which ensembles of these numbers of members run, one after another.
-fn after(name: &str, plan: &dyn Fn(u64) -> Ensemble<Top>, members: &[u64]) -> (BTreeMap<PathBuf, Vec<u8>>, Report) {
+fn after(name: &str, plan: Plan<'_>, members: &[u64]) -> (BTreeMap<PathBuf, Vec<u8>>, Report) {
     let folder = Folder::new(name);
     let mut reports: Vec<Report> = members.iter().map(|many| run(&plan(*many), &Local::threads(2), &folder)).collect();
     (contents(&folder.0), reports.pop().unwrap())
@@ -25,7 +28,6 @@ fn more_members_go_on_in_a_folder() {
     let growing =
         |members| Ensemble::new("tops", members, 1 << 14, top).keep(["e"], |run| [run.stepper.energy(run.state)]);
     let one_each = |members| tops(members, 2).chunks_of(1);
-    type Plan<'a> = &'a dyn Fn(u64) -> Ensemble<Top>;
     for (plan, members, made) in [
         (&in_twenties as Plan<'_>, &[60, 130][..], 4),
         (&in_twenties, &[55, 130], 5),

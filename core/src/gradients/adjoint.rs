@@ -101,15 +101,8 @@ struct Record<'a, 'i, S: SecondDerivatives, P: Linearisable<S>> {
     events: &'a RefCell<Vec<ChangeOf<S>>>,
 }
 
-impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
-    type Output = Result<(), StepError>;
-
-    /// The vector registers of [`Stretch`].
-    const VECTORS: Vectors = Vectors::Four;
-    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
-
-    #[hot]
-    fn run(self) -> Self::Output {
+impl<S: SecondDerivatives, P: Linearisable<S>> Record<'_, '_, S, P> {
+    fn run(self) -> Result<(), StepError> {
         let Self { linearised, state, steps, given, events } = self;
         given.motions.clear();
         for n in steps.clone() {
@@ -128,7 +121,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Record<'_, '_, S, P> {
 }
 
 /// The reverse pass over several steps, with the costs of the states before them, and that of the run's last state.
-struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
+struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>> {
     linearised: &'a Linearisation<'a, S, P>,
     steps: Range<u64>,
     events: &'a [ChangeOf<S>],
@@ -136,15 +129,29 @@ struct Stretch<'a, 'b, S: SecondDerivatives, P: Linearisable<S>, C> {
     /// The derivatives by the inputs, from the last to the first.
     by_inputs: &'a mut Vec<InputOf<S>>,
     back: &'a mut Back<'b, Group<S>>,
-    cost: &'a mut C,
+    cost: &'a mut CostOf<'b, S>,
 }
 
-impl<S, P, C> Kernel for Stretch<'_, '_, S, P, C>
-where
-    S: SecondDerivatives,
-    P: Linearisable<S>,
-    C: FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
-{
+/// The derivatives of a state's cost, without a type of their own: a pass is compiled once for all costs.
+type CostOf<'a, S> = dyn FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>> + 'a;
+
+impl<S: SecondDerivatives, P: Linearisable<S>> Stretch<'_, '_, S, P> {
+    /// Adds the derivatives by the input of a step, for the half of its length and the momentum's part at its end.
+    fn add_inputs(&mut self, n: u64, at_end: Vector<S>, half: Scalar<S>) {
+        let (input, mut shares) = (self.given.input(n), self.back.values.iter());
+        match input {
+            Input::Free if n == self.steps.end || self.given.inputs.is_empty() => {}
+            Input::Free => self.by_inputs.push(Input::Free),
+            // Half of the impulse comes before the step, and half after it.
+            Input::Force(_) => self.by_inputs.push(Input::Force((self.back.cotangent.momentum + at_end) * half)),
+            Input::Values(_) => {
+                self.by_inputs.push(input.of_scalars(&mut || shares.next().copied().unwrap_or(real(0.0))));
+            }
+        }
+    }
+}
+
+impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Stretch<'_, '_, S, P> {
     type Output = Result<(), StepError>;
 
     /// AVX is used for its instructions with three operands; no computation acts on four numbers at a time.
@@ -152,10 +159,10 @@ where
     const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
-    fn run(self) -> Self::Output {
+    fn run(mut self) -> Self::Output {
         let Linearisation { stepper, table } = self.linearised;
         let Stepper { scene, plan } = stepper;
-        let (Range { start, end }, ends) = (self.steps, self.given.ends);
+        let (Range { start, end }, ends) = (self.steps.clone(), self.given.ends);
         let (half, stages) = (self.linearised.half_step(), plan.stages() - 2 * ends);
         let mut motions = self.given.motions.iter().rev();
         let (begin, changes) = self.events.split_at(if start == 0 && end > 0 { ends } else { 0 });
@@ -171,34 +178,34 @@ where
             if let Input::Values(values) = input {
                 values.each(&mut |_| self.back.values.push(real(0.0)));
             }
-            for (index, event) in step.iter().enumerate().rev() {
-                plan.visit((scene, table), (ends + index, event), self.back);
-            }
-            let mut shares = self.back.values.iter();
-            match input {
-                Input::Free if n == end || self.given.inputs.is_empty() => {}
-                Input::Free => self.by_inputs.push(Input::Free),
-                // Half of the impulse comes before the step, and half after it.
-                Input::Force(_) => self.by_inputs.push(Input::Force((self.back.cotangent.momentum + at_end) * half)),
-                Input::Values(_) => {
-                    self.by_inputs.push(input.of_scalars(&mut || shares.next().copied().unwrap_or(real(0.0))));
-                }
-            }
             let first = step.first().map(|event| &event.before);
-            let Some(read) = motions.next().or(first) else { continue };
-            let mut of_cost = (self.cost)(n, read);
-            if ends > 0 && (n == 0 || of_cost != Cotangent::zero()) {
-                // The processor's ends aren't traversed between steps, except for the cost of a state.
+            let mut of_cost = Cotangent::zero();
+            // The stages of a step, and then those of a processor. A visit is inlined, and so both are visited in one place.
+            for is_processor in [false, true] {
                 out.borrow_mut().clear();
-                if n == 0 {
-                    out.borrow_mut().extend_from_slice(begin);
-                } else if let Some(before) = first.or(self.given.before_end.as_ref()) {
-                    plan.make_end(&mut Recording { motion: *before, events: &out })?;
-                    core::mem::swap(&mut self.back.cotangent, &mut of_cost);
+                let mut number = ends;
+                if is_processor {
+                    let Some(read) = motions.next().or(first) else { break };
+                    of_cost = (self.cost)(n, read);
+                    // The processor's ends aren't traversed between steps, except for the cost of a state.
+                    if ends == 0 || n > 0 && of_cost == Cotangent::zero() {
+                        break;
+                    }
+                    number = if n == 0 { 0 } else { ends + stages };
+                    if n == 0 {
+                        out.borrow_mut().extend_from_slice(begin);
+                    } else if let Some(before) = first.or(self.given.before_end.as_ref()) {
+                        plan.make_end(&mut Recording { motion: *before, events: &out })?;
+                        core::mem::swap(&mut self.back.cotangent, &mut of_cost);
+                    }
                 }
-                let number = if n == 0 { 0 } else { ends + stages };
-                for (index, event) in out.borrow().iter().enumerate().rev() {
+                let made = out.borrow();
+                let changes = if is_processor { &**made } else { step };
+                for (index, event) in changes.iter().enumerate().rev() {
                     plan.visit((scene, table), (number + index, event), self.back);
+                }
+                if !is_processor {
+                    self.add_inputs(n, at_end, half);
                 }
             }
             self.back.add(&of_cost);
@@ -224,9 +231,9 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
         state: &mut StateOf<S, P>,
         steps: u64,
         tape: Tape,
-        cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
+        mut cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<GradientOf<S>, StepError> {
-        self.adjoint_of(state, (steps, &[]), tape, cost).map(|(gradient, _)| gradient)
+        self.adjoint_of(state, (steps, &[]), tape, &mut cost).map(|(gradient, _)| gradient)
     }
 
     /// Makes a step with each of these inputs, and returns the gradient by the start and the parameters, as
@@ -267,9 +274,9 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
         state: &mut StateOf<S, P>,
         inputs: &[InputOf<S>],
         tape: Tape,
-        cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
+        mut cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
     ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
-        self.adjoint_of(state, (inputs.len() as u64, inputs), tape, cost)
+        self.adjoint_of(state, (inputs.len() as u64, inputs), tape, &mut cost)
     }
 
     fn adjoint_of(
@@ -277,7 +284,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
         state: &mut StateOf<S, P>,
         (steps, inputs): (u64, &[InputOf<S>]),
         tape: Tape,
-        mut cost: impl FnMut(u64, &MotionOf<S>) -> Cotangent<Vector<S>>,
+        cost: &mut CostOf<'_, S>,
     ) -> Result<(GradientOf<S>, Vec<InputOf<S>>), StepError> {
         let ends = if inputs.is_empty() { self.stepper.plan.ends() } else { 0 };
         let mut given = RunData { steps, inputs, motions: Vec::new(), before_end: None, ends };
@@ -294,16 +301,18 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
             .try_reserve(usize::try_from(length).unwrap_or(usize::MAX).saturating_mul(self.stepper.plan.stages()));
         let events = RefCell::new(events);
         let mut made = 0;
-        // All stretches but the last are stepped through without recording.
+        // All stretches but the last are stepped through first.
         while steps - made > length {
             starts.push((made, end));
             for _ in 0..length {
-                self.stepper.step_given(&mut end, given.input(made))?;
+                // The record is dropped, as steps without one would be compiled for all inputs again.
+                self.recorded_given(&mut end, given.input(made), &events, [false; 2])?;
+                events.borrow_mut().clear();
                 made += 1;
             }
         }
         starts.push((made, end));
-        dispatch(Record { linearised: self, state: &mut end, steps: made..steps, given: &mut given, events: &events })?;
+        Record { linearised: self, state: &mut end, steps: made..steps, given: &mut given, events: &events }.run()?;
         let mut gradient = vec![real(0.0); self.stepper.plan.parameters()];
         let mut back = Back { cotangent: Cotangent::zero(), gradient: &mut gradient, values: Vec::new() };
         let mut last = steps;
@@ -311,7 +320,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
             if last < steps {
                 events.borrow_mut().clear();
                 let (state, steps) = (&mut start, first..last);
-                dispatch(Record { linearised: self, state, steps, given: &mut given, events: &events })?;
+                Record { linearised: self, state, steps, given: &mut given, events: &events }.run()?;
             }
             let events = events.borrow();
             dispatch(Stretch {
@@ -321,7 +330,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
                 given: &given,
                 by_inputs: &mut by_inputs,
                 back: &mut back,
-                cost: &mut cost,
+                cost: &mut *cost,
             })?;
             last = first;
         }

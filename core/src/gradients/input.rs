@@ -120,7 +120,23 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
         input: &InputOf<S>,
         tangent: &mut TangentOf<S>,
     ) -> Result<StepReport, StepError> {
-        dispatch(Carry { linearised: self, state, input, tangent })
+        if let Some(count) = tangent.parameters() {
+            let own = self.stepper.plan.parameters();
+            assert_eq!(count, own, "the tangent is that of a plan with {count} parameters, and this one has {own}");
+        }
+        let before = *state;
+        tangent.events.get_mut().clear();
+        let made = self.recorded_given(state, input, &tangent.events, [true; 2]);
+        let report = made.inspect_err(|_| *state = before)?;
+        tangent.is_given_values = matches!(input, Input::Values(_));
+        tangent.keep();
+        dispatch(Carry { linearised: self, tangent });
+        if tangent.is_finite() {
+            return Ok(report);
+        }
+        tangent.go_back();
+        *state = before;
+        Err(StepError::NonFinite { what: "derivative after the step" })
     }
 
     /// One step with this input, and its blocks `A = ∂x⁺/∂x` and `B = ∂x⁺/∂u`. On an error the state is unchanged.
@@ -192,7 +208,6 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
 
     /// One step with this input, whose stages are recorded; after an error the state is undefined. The bits are those
     /// of [`Stepper::step_given`].
-    #[hot]
     pub(super) fn recorded_given(
         &self,
         state: &mut StateOf<S, P>,
@@ -201,32 +216,32 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Linearisation<'_, S, P> {
         ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
         let Stepper { scene, plan } = self.stepper;
+        let half = if let Input::Force(force) = input { Some(*force * self.half_step()) } else { None };
         match input {
-            Input::Free => self.stepper.recorded(state, events, ends),
-            Input::Force(force) => {
-                if !force.is_finite() {
-                    return Err(StepError::NonFinite { what: "control force" });
-                }
-                let half = *force * self.half_step();
-                plan.push(scene, &mut state.motion, &mut state.kept, &half);
-                let report = self.stepper.recorded(state, events, ends)?;
-                plan.push(scene, &mut state.motion, &mut state.kept, &half);
-                if !state.motion.momentum.is_finite() {
-                    return Err(StepError::NonFinite { what: "momentum after the step" });
-                }
-                Ok(report)
+            Input::Force(force) if !force.is_finite() => return Err(StepError::NonFinite { what: "control force" }),
+            Input::Values(values) if !values.is_finite() => {
+                return Err(StepError::NonFinite { what: "value given to the step" });
             }
             Input::Values(values) => {
-                if !values.is_finite() {
-                    return Err(StepError::NonFinite { what: "value given to the step" });
-                }
                 let seen = values.seen_from(&state.motion.attitude);
                 plan.see(&mut state.motion, &mut state.kept, seen);
-                let report = self.stepper.recorded(state, events, ends)?;
-                let own = scene.advected().seen_from(&state.motion.attitude);
-                plan.see(&mut state.motion, &mut state.kept, own);
-                Ok(report)
+            }
+            Input::Free | Input::Force(_) => {}
+        }
+        if let Some(half) = &half {
+            plan.push(scene, &mut state.motion, &mut state.kept, half);
+        }
+        let report = self.stepper.recorded(state, events, ends)?;
+        if let Some(half) = &half {
+            plan.push(scene, &mut state.motion, &mut state.kept, half);
+            if !state.motion.momentum.is_finite() {
+                return Err(StepError::NonFinite { what: "momentum after the step" });
             }
         }
+        if let Input::Values(_) = input {
+            let own = scene.advected().seen_from(&state.motion.attitude);
+            plan.see(&mut state.motion, &mut state.kept, own);
+        }
+        Ok(report)
     }
 }

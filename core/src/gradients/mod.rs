@@ -17,6 +17,10 @@
 //! the processor, as the derivatives are those of the processed state; the adjoint makes an end for the cost of a state, unless the cost
 //! is zero.
 //!
+//! A [`Multibody`](crate::methods::Multibody) system with joints and a [`Chain`](crate::methods::Chain) have no
+//! derivatives of their steps: take differences of two motions, or declare the bodies together on a product of groups,
+//! with springs in the place of joints. [The chapter](crate::guide::gradients) has how.
+//!
 //! # Coordinates
 //!
 //! A state is `(g, μ)`; in the body frame the advected parameters are `w = g⁻¹·a_0`. A change of the state is
@@ -115,7 +119,7 @@ use core::ops::Range;
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
 use crate::motion::{MotionOf, OwnStep, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
-use crate::numbers::{Kernel, Vectors};
+use crate::numbers::{Kernel, Vectors, dispatch};
 use recording::Recording;
 
 /// A plan whose steps can be differentiated: some of the library's own plans.
@@ -124,7 +128,7 @@ use recording::Recording;
 #[diagnostic::on_unimplemented(
     message = "the derivatives of a step of `{Self}` aren't known",
     label = "not with this method",
-    note = "known are those of a scene's own step, of compositions, and of splittings, processed ones too, whose flow is exact or declared with `gradients`"
+    note = "known are those of a scene's own step, of compositions, and of splittings, processed ones too, whose flow is exact or declared with `gradients`; those of bodies in joints and of chains are differences of two motions"
 )]
 pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
     /// Constants of the stages, computed once for each [`Linearisation`]: the lengths of a splitting's stages, and the
@@ -322,14 +326,34 @@ impl<'a, S: SecondDerivatives, P: Linearisable<S>> Linearisation<'a, S, P> {
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
     /// One step, whose stages are recorded.
-    #[hot]
     fn recorded(
         &self,
         state: &mut StateOf<S, P>,
         events: &RefCell<Vec<ChangeOf<S>>>,
         ends: [bool; 2],
     ) -> Result<StepReport, StepError> {
-        let Self { scene, plan } = self;
+        dispatch(StepRecord { stepper: self, state, events, ends })
+    }
+}
+
+/// A step whose stages are recorded, compiled once for all derivatives and inputs, as it is inlined where it is called.
+struct StepRecord<'a, S: SecondDerivatives, P: Linearisable<S>> {
+    stepper: &'a Stepper<S, P>,
+    state: &'a mut StateOf<S, P>,
+    events: &'a RefCell<Vec<ChangeOf<S>>>,
+    ends: [bool; 2],
+}
+
+impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for StepRecord<'_, S, P> {
+    type Output = Result<StepReport, StepError>;
+
+    /// The registers of a step without a record.
+    const VECTORS: Vectors = P::VECTORS;
+    const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
+
+    #[hot]
+    fn run(self) -> Self::Output {
+        let Self { stepper: Stepper { scene, plan }, state, events, ends } = self;
         let mut recorded = Recording { motion: state.motion, events };
         match plan.record(scene, &mut recorded, &mut state.kept, ends) {
             Ok(report) => {
@@ -342,45 +366,26 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Stepper<S, P> {
     }
 }
 
-/// A step with its input, and a tangent that its stages transform.
+/// A tangent that the stages of a step transform.
 struct Carry<'a, 'l, S: SecondDerivatives, P: Linearisable<S>> {
     linearised: &'a Linearisation<'l, S, P>,
-    state: &'a mut StateOf<S, P>,
-    input: &'a InputOf<S>,
     tangent: &'a mut TangentOf<S>,
 }
 
 impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for Carry<'_, '_, S, P> {
-    type Output = Result<StepReport, StepError>;
+    type Output = ();
 
     /// The columns fill registers of four.
     const VECTORS: Vectors = Vectors::Four;
     const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
-    fn run(self) -> Self::Output {
-        let Self { linearised, state, input, tangent } = self;
-        let Linearisation { stepper: Stepper { scene, plan }, table } = linearised;
-        if let Some(count) = tangent.parameters() {
-            let own = plan.parameters();
-            assert_eq!(count, own, "the tangent is that of a plan with {count} parameters, and this one has {own}");
-        }
-        let before = *state;
-        tangent.events.get_mut().clear();
-        let made = linearised.recorded_given(state, input, &tangent.events, [true; 2]);
-        let report = made.inspect_err(|_| *state = before)?;
-        tangent.is_given_values = matches!(input, Input::Values(_));
-        tangent.keep();
+    fn run(self) {
+        let Self { linearised: Linearisation { stepper: Stepper { scene, plan }, table }, tangent } = self;
         let events = tangent.events.take();
         for (index, event) in events.iter().enumerate() {
             plan.visit((scene, table), (index, event), tangent);
         }
         tangent.events.replace(events);
-        if tangent.is_finite() {
-            return Ok(report);
-        }
-        tangent.go_back();
-        *state = before;
-        Err(StepError::NonFinite { what: "derivative after the step" })
     }
 }

@@ -101,7 +101,7 @@ fn shares_and_a_second_run_make_the_same_files() {
 }
 
 /// A file with more members goes on in the folder, whatever else of it no member knows of, and has the files of a folder with
-/// all of them at once. With fewer members it tells of the first ones.
+/// all of them at once. Fewer members are the first ones.
 #[test]
 fn more_members_extend_a_folder() {
     let folder = folder("more_members_extend_a_folder");

@@ -235,7 +235,7 @@ class Differentiable:
 
     def _known(self) -> Origin:
         if self._origin is None:
-            raise SetupError("the start of this run isn't known: a run of a `Stepper` has derivatives")
+            raise SetupError("the start of this run isn't known: a run of a `Stepper` has derivatives; of bodies in joints take the difference of two runs")
         return self._origin
 
 
