@@ -39,27 +39,30 @@ def apart(made: Generated, step: tuple[list, list, float], found: tuple[np.ndarr
 
 
 def error(made: Generated, term: ls.Term, seed: int) -> float | None:
-    """The largest difference of a momentum in two steps, relative to the momentum; none where no step has a solution."""
+    """The largest difference of a momentum in two steps; none where no step has a solution.
+
+    Differences say nothing about a step in which a wild function throws the body away: a shorter one decides.
+    """
     random = np.random.default_rng(seed)
     start = [factor.element(random, 0.5) for factor in made.factors]
     velocity = 0.3 * random.normal(size=sum(factor.dimension for factor in made.factors))
-    attitude = np.concatenate([factor.matrix(one).ravel() for factor, one in zip(made.factors, start)])
-    if len(start) == 1:
-        attitude = made.factors[0].matrix(start[0])
+    matrices = [factor.matrix(one) for factor, one in zip(made.factors, start)]
+    attitude = matrices[0] if len(matrices) == 1 else np.concatenate([one.ravel() for one in matrices])
+    found = None
     for h in (0.05, 0.005, 0.0005):
         try:
-            state, worst = term.stepper(h).start(velocity=velocity, attitude=attitude), 0.0
-            g = start
+            state, found, g = term.stepper(h).start(velocity=velocity, attitude=attitude), 0.0, start
             for _ in range(2):
                 before = state.momentum
                 state.step()
-                found = [state.attitude] if len(g) == 1 else state.attitude
-                after = [factor.of_matrix(one) for factor, one in zip(made.factors, found)]
-                worst, g = max(worst, apart(made, (g, after, h), (before, state.momentum))), after
-            return worst
+                attitudes = [state.attitude] if len(g) == 1 else state.attitude
+                after = [factor.of_matrix(one) for factor, one in zip(made.factors, attitudes)]
+                found, g = max(found, apart(made, (g, after, h), (before, state.momentum))), after
         except ls.StepError:
-            continue
-    return None
+            found = None
+        if found is not None and found < 1e-7:
+            break
+    return found
 
 
 def test_right_declarations_are_taken_and_their_steps_are_right():

@@ -109,6 +109,8 @@ fn checked(candidates: &[Candidate], accuracy: Accuracy, start: &Start) -> Resul
     if !(horizon > 0.0 && horizon.is_finite()) {
         return Err(AccuracyError::Horizon { horizon });
     }
+    // Quotients by a smaller tolerance overflow, and rounding leaves more than this one.
+    let accuracy = Accuracy { tolerance: tolerance.max(1e-300), ..accuracy };
     search::search(candidates, accuracy, start)
 }
 
