@@ -489,11 +489,12 @@ impl<M: Mechanism> Propagator for Devices<M> {
 
     fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
         let (inner, memory, motors) = self.sampled(self.layout.checked(state)?, self.h)?;
-        // What changes momenta at the ends of the step acts in it here: laws there as at its beginning, and the motors of wheels.
+        // Changes of momenta at the ends of the step act in it here: laws there as at its beginning, and the half of a motor's impulse
+        // by which the mean momentum of its wheel differs from that at the end.
         let all = self.file.control.iter().zip(&memory.torques);
         let mut inputs = self.inputs(&memory.after(&motors, self.h * 0.5), all);
         for (wheel, torque) in self.file.wheel.iter().zip(&motors) {
-            inputs[wheel.body].torque -= wheel.axis * *torque;
+            inputs[wheel.body].torque -= wheel.axis * (torque * 0.5);
         }
         let numbers = self.mechanism.numbers([self.time(state), self.h], &inputs).ok_or(OF_A_LAW)?;
         self.mechanism.joint_forces(&numbers, &inner)
