@@ -1,4 +1,4 @@
-//! Laws, wheels, pointings and orbits of several bodies, against one body, an integration with SciPy and closed forms.
+//! Laws, wheels, pointings and orbits of several bodies, against one body, an integration with `SciPy` and closed forms.
 
 use liestep::motion::Integrator as _;
 
@@ -58,31 +58,31 @@ step = 0.02
 columns = ["position", "quaternion", "velocity", "wheel-speeds", "control", "pointing", "gap"]
 "#;
 
-/// The end of [`SATELLITE`] by SciPy's DOP853 at a tolerance of 1e-13, with the force in the joint as an unknown of each
+/// The end of [`SATELLITE`] by `SciPy`'s DOP853 at a tolerance of 1e-13, with the force in the joint as an unknown of each
 /// derivative: positions, quaternions, angular velocities, the speed of the wheel, the angle to the planet.
 const END: [f64; 22] = [
-    0.305581492351257,
-    0.08148823491937138,
-    0.16701707218448394,
-    0.30131065170347426,
-    0.42829061204707175,
-    -0.10225630988277228,
-    0.9304170280186579,
-    0.11679374809503167,
-    0.24251083899376816,
-    0.24874056233228017,
-    0.13769859196200665,
-    0.03943050767480593,
-    0.8189704619213212,
-    0.5556723123093899,
-    -0.22988795988892016,
-    0.1570522511913691,
-    0.17096540957876696,
-    0.0034953508583679994,
-    0.29273253827901385,
-    0.0496563911607419,
-    31.888996321622177,
-    2.7889119223456924,
+    0.305_581_492_351,
+    0.081_488_234_919,
+    0.167_017_072_184,
+    0.301_310_651_703,
+    0.428_290_612_047,
+    -0.102_256_309_882,
+    0.930_417_028_018,
+    0.116_793_748_095,
+    0.242_510_838_993,
+    0.248_740_562_332,
+    0.137_698_591_962,
+    0.039_430_507_674,
+    0.818_970_461_921,
+    0.555_672_312_309,
+    -0.229_887_959_888,
+    0.157_052_251_191,
+    0.170_965_409_578,
+    0.003_495_350_858,
+    0.292_732_538_279,
+    0.049_656_391_160,
+    31.888_996_321_622,
+    2.788_911_922_345,
 ];
 
 /// The columns of [`END`] in a row.

@@ -9,6 +9,7 @@ use crate::file::control::{Control, Controller, Motor, Seen, Wheel, entries, fit
 use crate::file::law::{Value, within};
 use crate::file::orbit::Time;
 use crate::file::scene::SceneFile;
+use crate::run::memory::Memory;
 
 /// The spin of a body's wheels and the torque on it in a step, body frame, kg m²/s and N m.
 #[derive(Clone, Copy, Default, PartialEq)]
@@ -79,46 +80,9 @@ pub(crate) struct Devices<M> {
     h: f64,
 }
 
-/// The memory of a state between its steps.
-#[derive(Clone)]
-struct Memory {
-    /// Momenta of the wheels about their axes, kg m²/s.
-    momenta: Vec<f64>,
-    /// Held torques of the laws of wheels, and torques from outside on wheels without a law, N m.
-    motors: Vec<f64>,
-    /// Held torque of each law on a body, N m.
-    torques: Vec<Vector3<f64>>,
-    /// The readings of the last sample of each law.
-    readings: Vec<Vector3<f64>>,
-    /// Time behind the last whole step, s.
-    part: f64,
-}
-
 /// Most rounds for the torque of a law at the end of a step.
 const MOST_ROUNDS: u32 = 200;
 const OF_A_LAW: StepError = StepError::NonFinite { what: "torque of a law" };
-
-impl Memory {
-    fn read(entries: &[f64], (wheels, controls): (usize, usize)) -> Self {
-        let (momenta, rest) = entries.split_at(wheels);
-        let (motors, rest) = rest.split_at(wheels);
-        let (torques, rest) = rest.split_at(3 * controls);
-        let (readings, part) = rest.split_at(rest.len() - 1);
-        let [torques, readings] =
-            [torques, readings].map(|entries| entries.chunks(3).map(Vector3::from_column_slice).collect());
-        Self { momenta: momenta.to_vec(), motors: motors.to_vec(), torques, readings, part: part[0] }
-    }
-
-    fn entries(&self) -> impl Iterator<Item = f64> + '_ {
-        let vectors = self.torques.iter().chain(&self.readings).flat_map(|vector| vector.iter().copied());
-        self.momenta.iter().chain(&self.motors).copied().chain(vectors).chain([self.part])
-    }
-
-    /// The momenta of the wheels this time, s, after the beginning of a step with these torques of their motors.
-    fn after(&self, motors: &[f64], time: f64) -> Vec<f64> {
-        self.momenta.iter().zip(motors).map(|(momentum, torque)| momentum + torque * time).collect()
-    }
-}
 
 impl<M: Mechanism> Devices<M> {
     /// The stepper of a file with a mechanism of this many bodies, with stages of these shares of a step of `h`, s.
@@ -489,11 +453,12 @@ impl<M: Mechanism> Propagator for Devices<M> {
 
     fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
         let (inner, memory, motors) = self.sampled(self.layout.checked(state)?, self.h)?;
-        // What changes momenta at the ends of the step acts in it here: laws there as at its beginning, and the motors of wheels.
+        // Changes of momenta at the ends of the step act in it here: laws there as at its beginning, and the half of a motor's impulse
+        // by which the mean momentum of its wheel differs from that at the end.
         let all = self.file.control.iter().zip(&memory.torques);
         let mut inputs = self.inputs(&memory.after(&motors, self.h * 0.5), all);
         for (wheel, torque) in self.file.wheel.iter().zip(&motors) {
-            inputs[wheel.body].torque -= wheel.axis * *torque;
+            inputs[wheel.body].torque -= wheel.axis * (torque * 0.5);
         }
         let numbers = self.mechanism.numbers([self.time(state), self.h], &inputs).ok_or(OF_A_LAW)?;
         self.mechanism.joint_forces(&numbers, &inner)
