@@ -127,7 +127,7 @@ fn a_body_among_several_has_the_numbers_of_one() {
              advected = {{ b = \"B\" }}\nB = {{ equator = [0.2, 0.5, 1] }}\nlargest = 0.2\n\
              [[wheel]]\naxis = [0, 0.6, 0.8]\ninertia = 0.02\nspeed = 30\ntorque = \"0.1 * Omega[1] - 0.001 * speed\"\n\
              [[pointing]]\nname = \"down\"\naxis = [0, 0.6, 0.8]\nto = \"nadir\"\n\
-             [run]\nduration = 2\nstep = 0.05\n{method}\n[output]\nevery = 1\ncolumns = [\"quaternion\", \"velocity\", \"pointing\", \
+             [run]\nduration = 2\nstep = 0.05\n{method}\n[output]\nevery = 1\ncolumns = [\"quaternion\", \"velocity\", \"energy\", \"pointing\", \
              \"roll-pitch-yaw\", \"wheel-speeds\", \"control\"]\n"
         )
     };
@@ -162,7 +162,7 @@ fn a_body_among_several_has_the_numbers_of_one() {
         let (head, tables) = rest.split_once("[[control]]").unwrap();
         let several = kept(format!("title = \"Several\"\n{head}{body}[[control]]{tables}"));
         let [one, several] = [one, several].map(|text| rows(&folder, &text));
-        assert_eq!((one.len(), one[0].len()), (41, 16));
+        assert_eq!((one.len(), one[0].len()), (41, 17));
         let apart = crate::called::apart(&one, &several);
         println!("{control} {method}: {apart:e}");
         assert!(apart < 1e-11, "{control} {method}: {apart:e}");

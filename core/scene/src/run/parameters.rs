@@ -71,6 +71,19 @@ impl OneBody {
     }
 }
 
+impl OneBody {
+    /// Reads a state whose advected vectors are those of these numbers: a step has left those of its middle.
+    fn seen<T>(&self, numbers: &[f64], state: &[f64], read: impl FnOnce(&Whole, &[f64]) -> T) -> Option<T> {
+        let mut whole = self.stages[0].borrow_mut();
+        if self.layout.advected.is_empty() {
+            return Some(read(&whole, state));
+        }
+        let h = whole.step_size();
+        whole.take(numbers, h).ok()?;
+        Some(read(&whole, &whole.adopt(state)))
+    }
+}
+
 impl Mechanism for OneBody {
     type Numbers = Vec<f64>;
 
@@ -104,11 +117,12 @@ impl Mechanism for OneBody {
     }
 
     fn velocity(&self, numbers: &Vec<f64>, state: &[f64]) -> Vec<f64> {
-        self.stages[0].borrow().velocity_with(state, numbers)
+        let read = |whole: &Whole, state: &[f64]| whole.velocity_with(state, numbers);
+        self.seen(numbers, state, read).unwrap_or_else(|| vec![f64::NAN; self.layout.components()])
     }
 
     fn energy(&self, numbers: &Vec<f64>, state: &[f64]) -> f64 {
-        self.stages[0].borrow().energy_with(state, numbers)
+        self.seen(numbers, state, |whole, state| whole.energy_with(state, numbers)).unwrap_or(f64::NAN)
     }
 
     fn push(&self, _: &Vec<f64>, state: &mut [f64], impulses: &[f64]) -> Result<(), StepError> {
