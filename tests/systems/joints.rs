@@ -2,9 +2,7 @@
 //! of joints that the others imply.
 
 use declarations::{FallingBody, FloatingBody};
-use liestep::effects::joints::{
-    DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderFriction, SliderSpring,
-};
+use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 use liestep::groups::{LieGroup as _, R3};
 use liestep::methods::{Joint, Multibody, MultibodyStepper};
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, lagrangian};
@@ -233,7 +231,6 @@ fn all_kinds_keep_the_momenta() {
         }
         if shifts == 1 {
             system.between([Some(first), Some(second)], SliderDamping { c: 0.7, axis: unit });
-            system.between([Some(first), Some(second)], SliderFriction { force: 0.3, speed: 0.2, axis: unit });
         }
         let stepper = system.stepper(0.005).unwrap();
         let apart = if number == 7 { Vector3::new(0.3, 0.4, 0.0) } else { Vector3::zeros() };
@@ -348,33 +345,6 @@ fn dry_friction_stops_a_wheel() {
     assert!((rate - (3.0 - torque * 4.0 / J)).abs() < 1e-5, "{rate}");
     stepper.run(&mut state, 400).unwrap();
     assert!(stepper.velocity(&state, wheel)[2].abs() < 1e-3);
-}
-
-/// A mass with dry friction on a slider slows down by `f t/m` until it creeps; where friction is viscous, as in closed form.
-#[test]
-fn dry_friction_stops_a_mass() {
-    let (m, force) = (1.5, 0.3);
-    let axis = Vector3::new(0.0, 0.6, 0.8);
-    let moved = |speed: f64, start: f64, steps: u64| {
-        let mut system = Multibody::new();
-        let mass = system.body(floating(m, [0.2; 3]));
-        system.join(Joint::slider([Vector3::zeros(); 2], axis, Matrix3::identity()), None, mass);
-        system.between([None, Some(mass)], SliderFriction { force, speed, axis });
-        let stepper = system.stepper(0.01).unwrap();
-        let velocity = six([0.0; 3], (axis * start).into());
-        let mut state = stepper.start(&[(SO3::identity(), R3::identity())], &[velocity]).unwrap();
-        stepper.run(&mut state, steps).unwrap();
-        (position(&stepper, &state, mass).dot(&axis), stepper.velocity(&state, mass))
-    };
-    let (way, velocity) = moved(1e-3, 2.0, 500);
-    assert!((way - (2.0 * 5.0 - force * 25.0 / (2.0 * m))).abs() < 1e-4, "{way}");
-    assert!((velocity.fixed_rows::<3>(3).dot(&axis) - (2.0 - force * 5.0 / m)).abs() < 1e-5, "{velocity}");
-    let (_, velocity) = moved(1e-3, 2.0, 1200);
-    assert!(velocity.norm() < 1e-3);
-    // Slower than the speed by much it is friction of the coefficient f/u.
-    let (way, _) = moved(100.0, 0.1, 500);
-    let rate = force / 100.0 / m;
-    assert!((way - 0.1 / rate * (1.0 - (-rate * 5.0_f64).exp())).abs() < 1e-6, "{way}");
 }
 
 /// A parallelogram that starts flat, where one function more is implied than elsewhere: the step that opens it is an error.

@@ -5,7 +5,7 @@
 //! |---|---|---|
 //! | [`JointSpring`] | [`SliderSpring`] | energies `½ k θ²`, `½ k (s − l)² − f (s − l)` |
 //! | [`JointDamping`] | [`SliderDamping`] | viscous friction, `−c ω` and `−c v` |
-//! | [`DryFriction`] | [`SliderFriction`] | dry friction, `−τ ω/√(|ω|² + v²)` and `−f v/√(v² + u²)` |
+//! | [`DryFriction`] | | `−τ ω/√(|ω|² + v²)` |
 //! | [`JointTorque`] | | a motor's constant torque |
 //!
 //! Friction couples the steps of its bodies, so that no coefficient is too large for a step; springs and motors are kicks.
@@ -132,32 +132,6 @@ pub struct SliderSpring {
 pub struct SliderDamping {
     /// Coefficient, N s/m.
     pub c: f64,
-    /// The unit vector of the axis, in the axes of the first body.
-    pub axis: Vector3<f64>,
-}
-
-/// Dry friction in a slider, regularised: the force `−f v/√(v² + u²)` against the velocity `v` of [`SliderDamping`]. Faster than the
-/// speed `u` it is nearly `f`; slower than that it is viscous, so that a slider creeps where it would stick.
-#[force(
-    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(R_1 = F_1.seen_from(space), r = d_2.seen_from(d_1)),
-    displacement(eta_1, xi_1, eta_2, xi_2),
-    work = {
-        let y = R_1.transpose() * r;
-        let A = R_1 * F_1;
-        let z = A.transpose() * (r + d_2 - d_1);
-        let before = R_1.transpose() * (xi_2 - xi_1) - eta_1.cross(&y);
-        let after = A.transpose() * (xi_2_next - xi_1_next) - eta_1_next.cross(&z);
-        let shift = axis.dot(&(z - y));
-        -0.5 * h * force * shift / (shift * shift + h * h * speed * speed).sqrt() * axis.dot(&(before + after))
-    },
-)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SliderFriction {
-    /// The force `f` of sliding, N.
-    pub force: f64,
-    /// The speed `u` below which friction is viscous, m/s, above zero.
-    pub speed: f64,
     /// The unit vector of the axis, in the axes of the first body.
     pub axis: Vector3<f64>,
 }

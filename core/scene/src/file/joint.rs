@@ -48,7 +48,7 @@ pub(crate) struct Terms {
     pub(crate) rest: f64,
     /// The torque or the force of a motor, N m or N.
     pub(crate) effort: Option<f64>,
-    /// The torque of dry friction, N m, and the rate below which it is viscous, rad/s; in a slider a force, N, and a speed, m/s.
+    /// The torque of dry friction, N m, and the rate below which it is viscous, rad/s.
     pub(crate) friction: Option<[f64; 2]>,
 }
 
@@ -175,43 +175,13 @@ pub(crate) struct JointTable {
 /// A value whose unit depends on the kind of joint.
 type Value = Option<Spanned<toml::Value>>;
 
-/// Dry friction, regularised: its torque, or its force in a slider.
-#[derive(Clone, Deserialize)]
+/// Dry friction, regularised.
+#[derive(Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FrictionTable {
-    torque: Value,
-    force: Value,
-    /// The rate or the speed below which friction is viscous.
-    below: Value,
-}
-
-impl FrictionTable {
-    /// The torque or the force, and the rate or the speed below which it is viscous.
-    fn friction(&self, span: Range<usize>, is_slider: bool) -> Result<[f64; 2], SpanMessage> {
-        let (own, other, message) = if is_slider {
-            (
-                &self.force,
-                &self.torque,
-                "dry friction in a slider has a `force`, N, and the speed `below` which it is viscous, m/s",
-            )
-        } else {
-            (
-                &self.torque,
-                &self.force,
-                "dry friction has a `torque`, N m, and the rate `below` which it is viscous, rad/s",
-            )
-        };
-        let [most, below] = if is_slider {
-            [positive::<Force>(own)?, positive::<Speed>(&self.below)?]
-        } else {
-            [positive::<Torque>(own)?, positive::<Rate>(&self.below)?]
-        };
-        match (most, below, other) {
-            (Some(most), Some(below), None) => Ok([most, below]),
-            (_, _, Some(other)) => Err((other.span(), message.to_owned())),
-            _ => Err((span, message.to_owned())),
-        }
-    }
+    torque: PositiveScalar<Torque>,
+    /// The rate below which friction is viscous.
+    below: PositiveScalar<Rate>,
 }
 
 /// The ends of a joint's way.
@@ -316,11 +286,8 @@ impl JointTable {
                 return refuse(value.span(), format!("a {name} has no `{key}`{instead}"));
             }
         }
-        if let (Some(friction), false) = (&self.friction, of_both) {
-            return refuse(
-                friction.span(),
-                format!("a {name} has no dry `friction`: it is for joints that turn, and for sliders"),
-            );
+        if let (Some(friction), false) = (&self.friction, kind.turns()) {
+            return refuse(friction.span(), format!("a {name} has no dry `friction`: it is for joints that turn"));
         }
         if let (Some(limits), false) = (&self.limits, matches!(kind, Kind::Pin | Kind::Slider)) {
             return refuse(limits.span(), format!("a {name} has no `limits`: those of a pin and a slider are watched"));
@@ -377,7 +344,10 @@ impl JointTable {
             stiffness: by_kind(positive::<TurningStiffness>(&self.stiffness), positive::<Stiffness>(&self.stiffness))?,
             rest: by_kind(read::<Angle>(&self.rest), read::<Length>(&self.rest))?.unwrap_or(0.0),
             effort: by_kind(read::<Torque>(&self.torque), read::<Force>(&self.force))?,
-            friction: self.friction.map(|one| one.get_ref().friction(one.span(), is_slider)).transpose()?,
+            friction: self.friction.map(|friction| {
+                let FrictionTable { torque, below } = friction.into_inner();
+                [torque.value, below.value]
+            }),
         };
         let start = Coordinates {
             angle: read::<Angle>(&self.angle)?.unwrap_or(0.0),

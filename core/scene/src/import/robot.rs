@@ -158,7 +158,7 @@ const RADIUS: f64 = 0.01;
 /// The mass of a link without one, relative to the least mass of the others.
 const LIGHT: f64 = 1e-3;
 
-/// The rate below which dry friction is viscous, rad/s, and in sliders the speed, m/s.
+/// The rate below which dry friction is viscous, rad/s.
 const CREEP: f64 = 0.01;
 
 impl Robot {
@@ -393,10 +393,8 @@ impl Robot {
         } else if *damping > 0.0 {
             let _ = writeln!(text, "damping = {}", written(*damping));
         }
-        if *friction > 0.0 && kind == "weld" {
-            self.remarks.push(format!("joint {name}: it is fixed, and its friction is left out"));
-        } else if *friction > 0.0 && kind == "slider" {
-            let _ = writeln!(text, "friction = {{ force = {}, below = {CREEP} }}", written(*friction));
+        if *friction > 0.0 && matches!(kind, "slider" | "weld") {
+            self.remarks.push(format!("joint {name}: a {kind} has no dry friction, {} N", short(*friction)));
         } else if *friction > 0.0 {
             let _ = writeln!(text, "friction = {{ torque = {}, below = {CREEP} }}", written(*friction));
         }

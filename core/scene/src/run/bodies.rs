@@ -4,9 +4,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use liestep::effects::joints::{
-    DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderFriction, SliderSpring,
-};
+use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
 use liestep::effects::{Rotor, Torque};
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
@@ -238,9 +236,6 @@ fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) 
         }
         if let Some(c) = terms.damping {
             system.between(bodies, SliderDamping { c, axis });
-        }
-        if let Some([force, speed]) = terms.friction {
-            system.between(bodies, SliderFriction { force, speed, axis });
         }
         return;
     }

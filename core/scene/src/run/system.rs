@@ -156,7 +156,8 @@ impl System {
             let make = move |h| Ok(AnyStepper::new(system.multibody(&file, scheme, h)?.0));
             Candidate { scheme, make: Box::new(make) }
         };
-        let has_steps_back = self.one_way().is_none();
+        // A point mass has no step back, either.
+        let has_steps_back = self.one_way().is_none() && self.bodies.iter().all(|body| body.J.is_some());
         let candidates: Vec<_> = of_any_group(has_steps_back).map(candidate).collect();
         let beside = displaced(attitude);
         let chosen = choose(&candidates, accuracy, [attitude, &beside], &velocity);
