@@ -19,6 +19,25 @@ Exit codes:
   4  a result can't be written or printed
   130  Ctrl-C has stopped an ensemble, which keeps its finished files; the message has the command that goes on";
 
+/// An example of a file, and how its keys are found.
+const SCENE: &str = "\
+A scene is a file of TOML, as this one of a body in space:
+
+  [body]
+  moments = [1, 2, 3]                      # kg m²
+  [start]
+  yaw_pitch_roll = [0, \"5 deg\", 0]
+  velocity = [0, 0.1, 5]                   # rad/s, body frame
+  [torque]
+  torque = [0, 0, 0.01]                    # N m, or over time: { csv = \"FILE\", columns = [\"x\", \"y\", \"z\"], between = \"steps\" }
+  [run]
+  step = 0.01                              # s, or an accuracy
+  duration = 10                            # s
+
+Several bodies are tables [[body]] with [[joint]]; further tables are [orbit] with a tle, [[control]], [[wheel]], [[pointing]], [output],
+[sweep] and [ensemble]. A key that isn't known is answered by those that its table has. The page of `liestep-scene` has all of them,
+and examples/scenes many scenes.";
+
 pub(crate) fn command() -> Command {
     let scenes = || files("The scene files");
     let verify = || {
@@ -33,13 +52,14 @@ pub(crate) fn command() -> Command {
         .subcommand(
             Command::new("run")
                 .about("Simulates scenes and draws them")
+                .after_help(SCENE)
                 .arg(scenes())
                 .arg(out())
                 .arg(flag("csv", "Also write a table as CSV, while it runs"))
                 .arg(flag("arrow", "Also write the table as a stream of Arrow IPC, .arrows, while it runs; in Python pyarrow.ipc.open_stream(path).read_pandas() reads it"))
                 .arg(flag("html", "Also write a page that plays the motion, to be opened in a browser")),
         )
-        .subcommand(Command::new("check").about("Reads scenes and makes their first step").arg(scenes()))
+        .subcommand(Command::new("check").about("Reads scenes and makes their first step").after_help(SCENE).arg(scenes()))
         .subcommand(
             Command::new("sweep")
                 .about("Runs every scene of a file's table `sweep`, and prints a row of FILE.sweep.csv for each")

@@ -151,6 +151,7 @@ def test_members_that_fail_are_told(tmp_path):
 
 
 @pytest.mark.parametrize("wrong", [
+    {"attitude": ls.normal([[1, 0, 0], [0, 1, 0], [0, 0, 1]], 0.1)},
     {"members": 0}, {"members": 2.5}, {"seed": -1}, {"m": 3}, {"x": ls.normal(0, 1)}, {"m": ls.normal([1, 2], 1)},
 ])
 def test_hostile_ensembles(top, wrong):

@@ -45,7 +45,7 @@ fn files_of_another_kind() {
         error: mark.toml:12:2: unknown field `darg`, expected one of `title`, `body`, `start`, `run`, `orbit`, `pointing`, `picture`, `event`, `output`, `lagrangian`, `hamiltonian`, `force`, `nonholonomic`, `control`, `wheel`, `gravity`, `gravity_gradient`, `dipole`, `spring`, `rotor`, `drag`, `air_drag`, `torque`, `thrust`, `magnetic_damping`; did you mean `drag`?
         error: bytes.toml:1:12: isn't a text in UTF-8
         error: nested.toml:1:89: cannot recurse further; max recursion depth met
-        error: model.toml:2:1: is XML, and a scene is TOML: `liestep import model.toml` makes one of a robot's model, of URDF
+        error: model.toml:2:1: is XML, and a scene is TOML: `liestep import model.toml` makes one of a robot's model, of URDF, SDF or MJCF
         error: table.toml:1:1: missing field `name`
     "]].assert_eq(&messages.concat());
 }

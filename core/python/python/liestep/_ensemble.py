@@ -43,6 +43,8 @@ def _spread(kind: str, first: Any, second: Any) -> Spread:
 def normal(mean: Any, deviation: Any) -> Spread:
     """Numbers of the normal distribution, each component by itself.
 
+    A drawn attitude is a quaternion, which is normalised: half of an angle in rad as the deviation turns by that about each axis.
+
     Examples
     --------
     >>> import liestep as ls
@@ -168,6 +170,11 @@ class Ensemble:
         self.members, self.seed = members, seed
         self._draws: list[_Draw] = []
         self._turns = isinstance(attitude, Spread) and attitude.kind == "rotation"
+        if isinstance(attitude, Spread) and attitude.kind == "normal" and len(attitude.first) == 9 and all(attitude.second):
+            raise SetupError(
+                "a matrix whose entries are all drawn is no attitude: draw a quaternion, `attitude=ls.normal(quaternion, deviation)`, which is "
+                "normalised, where half of an angle in rad as the deviation turns by that about each axis; or `ls.rotation()`"
+            )
         start = {"velocity": velocity, "attitude": attitude}
         for name, spread in {**start, **drawn}.items():
             if isinstance(spread, Spread) and spread.kind != "rotation":

@@ -160,7 +160,7 @@ def magnetic_damping(*, k: float, field: Any, J: Any) -> Term:
 
 
 def torque(torque: Any) -> Term:
-    """A torque that stays the same in the body, N m."""
+    """A torque in the axes of the body, N m: constant, or a signal over time, `liestep.signal`."""
     return _term("torque", torque=torque)
 
 

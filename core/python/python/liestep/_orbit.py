@@ -61,7 +61,9 @@ class Orbit:
     def local_vertical(self, time: float = 0.0) -> Array:
         """The axes of the local vertical in space as columns: x ahead, y against the normal of the orbit, z to the mass.
 
-        An attitude relative to it starts a body: ``attitude=orbit.local_vertical() @ relative``.
+        An attitude relative to it starts a body: ``attitude=orbit.local_vertical() @ relative``, a matrix, as of five degrees of pitch
+        ``Rotation.from_euler("y", 5, degrees=True).as_matrix()`` by SciPy. A body that starts at rest relative to these axes turns with
+        them: its velocity is ``turn.T @ orbit.turning.at([0])[0]`` with its attitude ``turn``.
         """
         rows = self._native.local_vertical(number("time", time))
         return floats("axes", rows, SetupError).reshape(3, 3)

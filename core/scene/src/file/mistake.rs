@@ -93,7 +93,10 @@ impl Mistake {
 
 /// The message about a file of XML, as a robot's model.
 fn is_xml(path: &Path) -> String {
-    format!("is XML, and a scene is TOML: `liestep import {}` makes one of a robot's model, of URDF", path.display())
+    format!(
+        "is XML, and a scene is TOML: `liestep import {}` makes one of a robot's model, of URDF, SDF or MJCF",
+        path.display()
+    )
 }
 
 /// Words of other programs, each with the name that it stands for here, and advice for where that name is expected.
@@ -153,12 +156,31 @@ pub(crate) fn advised(message: &str) -> String {
             let advice = FORGOTTEN.iter().find(|(forgotten, _)| *forgotten == key);
             advice.map_or_else(|| message.to_owned(), |(_, advice)| format!("{message}; {advice}"))
         }
+        _ if message.starts_with("invalid type: ") => typed(message),
         _ if message.contains("expected `nan`") => {
             "isn't a value: a number, a text in quotation marks, a list in brackets; what isn't there is left out"
                 .to_owned()
         }
         _ => message.to_owned(),
     }
+}
+
+/// A message about a value of another type than expected, in words of files.
+fn typed(message: &str) -> String {
+    let Some((found, expected)) = message.split_once(", expected ") else { return message.to_owned() };
+    let found = if found.ends_with(": map") { "invalid type: table" } else { found };
+    let is_text = found.contains("string ") || found.ends_with("table");
+    let expected = match expected {
+        "a sequence" if is_text => {
+            "a list of numbers, as [0, 0, 1]; of an effect also one over time, as { csv = \"FILE\", columns = [\"x\", \"y\", \"z\"], \
+             between = \"steps\" } or { times = […], values = […], between = \"lines\" }"
+        }
+        "a sequence" => "a list of numbers, as [0, 0, 1]",
+        "i64" | "u64" | "u32" | "usize" => "a whole number",
+        "a map" | "map" => "a table",
+        other => other,
+    };
+    format!("{found}, expected {expected}")
 }
 
 /// The lines of a text, by which the places of many ranges are found.

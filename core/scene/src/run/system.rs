@@ -156,8 +156,7 @@ impl System {
             let make = move |h| Ok(AnyStepper::new(system.multibody(&file, scheme, h)?.0));
             Candidate { scheme, make: Box::new(make) }
         };
-        // A point mass has no step back, either.
-        let has_steps_back = self.one_way().is_none() && self.bodies.iter().all(|body| body.J.is_some());
+        let has_steps_back = self.one_way().is_none();
         let candidates: Vec<_> = of_any_group(has_steps_back).map(candidate).collect();
         let beside = displaced(attitude);
         let chosen = choose(&candidates, accuracy, [attitude, &beside], &velocity);
