@@ -98,6 +98,9 @@ class _Members:
 class Many(Columns):
     """What is there of an ensemble: a row for each member and kept time.
 
+    Its columns are in `names`: ``member``, ``step``, ``status``, ``t``, the attitude, as ``q_w`` to ``q_z`` on SO(3), the velocity, the
+    momentum and the energy; ``many.group("q_")`` has those of a beginning as an array.
+
     Attributes
     ----------
     finished, failed : int
@@ -130,7 +133,8 @@ class Ensemble:
     step, **method
         As of `liestep.Stepper`.
     velocity, attitude
-        A start, or what it is drawn from: `normal`, `uniform`, `rotation`.
+        A start, or what it is drawn from: `normal`, `uniform`, `rotation`. Angles by their names, or rates relative to a local
+        vertical, are drawn by the table ``ensemble`` of a file, `liestep.scene`.
     seed : int
         The same seed draws the same members, on every machine.
     **drawn
