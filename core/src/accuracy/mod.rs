@@ -109,10 +109,16 @@ fn checked(candidates: &[Candidate], accuracy: Accuracy, start: &Start) -> Resul
     if !(horizon > 0.0 && horizon.is_finite()) {
         return Err(AccuracyError::Horizon { horizon });
     }
-    // Quotients by a smaller tolerance overflow, and rounding leaves more than this one.
-    let accuracy = Accuracy { tolerance: tolerance.max(1e-300), ..accuracy };
-    search::search(candidates, accuracy, start)
+    // Rounding leaves more than the least tolerance, and quotients by much smaller ones overflow.
+    let searched = Accuracy { tolerance: tolerance.max(LEAST), ..accuracy };
+    search::search(candidates, searched, start).map_err(|error| match error {
+        AccuracyError::Unreachable { floor, trials, .. } => AccuracyError::Unreachable { tolerance, floor, trials },
+        other => other,
+    })
 }
+
+/// The least tolerance that is searched for.
+const LEAST: f64 = 1e-17;
 
 /// The cheapest of these steppers for an accuracy, as by [`Stepper::for_accuracy`], for states that are numbers.
 ///
