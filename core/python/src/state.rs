@@ -301,8 +301,8 @@ impl State {
             &[torque] if torque.is_finite() => Ok((name, torque)),
             _ => refused(&format!("the torque of the wheel `{name}` is one number")),
         };
-        let motors = of_wheels.into_iter().map(motor).collect::<Result<_, _>>()?;
-        if torques.is_empty() && forces.is_empty() {
+        let motors = of_wheels.into_iter().map(motor).collect::<Result<Vec<_>, _>>()?;
+        if torques.is_empty() && forces.is_empty() && !motors.is_empty() {
             return Ok((None, motors));
         }
         let Some(system) = system else {
