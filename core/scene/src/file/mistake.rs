@@ -100,7 +100,7 @@ fn is_xml(path: &Path) -> String {
 }
 
 /// Words of other programs, each with the name that it stands for here, and advice for where that name is expected.
-const OTHER_WORDS: [(&str, &str, &str); 28] = [
+const OTHER_WORDS: [(&str, &str, &str); 27] = [
     ("hinge", "pin", "a hinge is a `pin`"),
     ("revolute", "pin", "a revolute joint is a `pin`"),
     ("spherical", "ball", "a spherical joint is a `ball`"),
@@ -120,7 +120,6 @@ const OTHER_WORDS: [(&str, &str, &str); 28] = [
     ("gravitation", "gravity", "a weight is `gravity`"),
     ("flywheel", "wheel", "a flywheel in the body is a `wheel`"),
     ("wheel", "rotor", "a wheel that keeps its spin is a `rotor` of the body"),
-    ("wheel", "joint", "a wheel that keeps its spin is a `rotor` of its `[[body]]`"),
     ("controller", "control", "a law of a torque is a `control`"),
     ("law", "control", "a law of a torque is a `control`"),
     ("damping", "drag", "damping against turning is `drag`"),
