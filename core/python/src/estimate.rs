@@ -97,7 +97,9 @@ impl Task {
     fn numbers(&self, numbers: &[f64], constants: &[f64]) -> Vec<f64> {
         let mut numbers = numbers.to_vec();
         for (places, value) in self.unknowns.iter().zip(constants) {
-            places.iter().for_each(|&place| numbers[place] = *value);
+            for &place in places {
+                numbers[place] = *value;
+            }
         }
         numbers
     }

@@ -188,9 +188,9 @@ impl SignalSlopes {
                     let signal = &signal.get().0;
                     let mut value = vec![0.0; change.width];
                     if span[1] == 0.0 {
-                        signal.at(span[0], &mut value)
+                        signal.at(span[0], &mut value);
                     } else {
-                        signal.mean(span, &mut value)
+                        signal.mean(span, &mut value);
                     }
                     // A direction is divided by its length.
                     let size = length(&value);
