@@ -126,9 +126,13 @@ impl State {
     /// Makes all of the steps, or on an error none.
     fn make(&self, steps: u64, inputs: &Inputs) -> Result<(), Failure> {
         let mut numbers = self.lock()?;
-        let mut driven = numbers.clone();
-        self.drive_wheels(inputs.motors.iter().map(|(wheel, torque)| (wheel.as_str(), *torque)), &mut driven)?;
-        let (stepper, mut state) = self.of_numbers(&driven)?;
+        let (stepper, mut state) = if inputs.motors.is_empty() {
+            self.of_numbers(&numbers)?
+        } else {
+            let mut driven = numbers.clone();
+            self.drive_wheels(inputs.motors.iter().map(|(wheel, torque)| (wheel.as_str(), *torque)), &mut driven)?;
+            self.of_numbers(&driven)?
+        };
         if !inputs.are_none() && stepper.length(&state).is_some() {
             return refused("steps of a pace or a density have lengths of their own, and take no inputs");
         }

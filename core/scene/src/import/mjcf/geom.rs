@@ -44,7 +44,7 @@ pub(super) fn weight(element: &Element<'_, '_>, compiler: &Compiler) -> Read<Wei
             return Err((place(node), "the ends of `fromto` are one point".to_owned()));
         }
         frame.translation = Translation3::from((from + to) * 0.5);
-        // As in MuJoCo, the third axis is that from the second point to the first.
+        // The third axis is that from the second point to the first, as in MuJoCo.
         frame.rotation = to_axis(&(-way.normalize()));
         half = Some(way.norm() * 0.5);
     }
