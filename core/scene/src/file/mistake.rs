@@ -171,7 +171,7 @@ fn typed(message: &str) -> String {
     let is_text = found.contains("string ") || found.ends_with("table");
     let expected = match expected {
         "a sequence" if is_text => {
-            "a list of numbers, as [0, 0, 1]; of an effect also one over time, as { csv = \"FILE\", columns = [\"x\", \"y\", \"z\"], \
+            "a list of numbers, as [0, 0, 1]; effects of a single body take values over time, too, as { csv = \"FILE\", columns = [\"x\", \"y\", \"z\"], \
              between = \"steps\" } or { times = […], values = […], between = \"lines\" }"
         }
         "a sequence" => "a list of numbers, as [0, 0, 1]",

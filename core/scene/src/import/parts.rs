@@ -14,7 +14,7 @@ const MOST_BYTES: usize = 1 << 23;
 pub(super) struct Parts {
     text: String,
     files: Vec<PathBuf>,
-    /// Where pieces of files begin in the text: the file, and the piece's place in it.
+    /// Pieces of files: the beginning of each in the text, the number of its file, and the piece's place there.
     pieces: Vec<(usize, usize, usize)>,
 }
 

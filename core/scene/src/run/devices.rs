@@ -128,7 +128,7 @@ impl<M: Mechanism> Devices<M> {
         Vector3::from_column_slice(of_body).dot(&wheel.axis)
     }
 
-    /// What acts on each body with momenta of the wheels and torques of these laws.
+    /// Inputs of each body: the momenta of its wheels and the torques of these laws.
     fn inputs<'t>(
         &self,
         momenta: &[f64],

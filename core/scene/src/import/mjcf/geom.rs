@@ -64,7 +64,7 @@ pub(super) fn weight(element: &Element<'_, '_>, compiler: &Compiler) -> Read<Wei
 
 enum Solid {
     Shape(Shape),
-    /// By its half axes, m.
+    /// An ellipsoid and its half axes, m.
     Ellipsoid(Vector3<f64>),
 }
 
