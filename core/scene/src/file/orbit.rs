@@ -141,11 +141,12 @@ impl<Q: Quantity> Parameter for Scalar<Q> {
     }
 }
 
+/// Over time zero is a term that is off.
 impl<Q: Quantity> Parameter for PositiveScalar<Q> {
     const UNIT: Option<&'static str> = si::<Q>();
 
     fn put(&mut self, _: usize, number: f64, unit: &str) -> bool {
-        put(Some(&mut self.value), in_si::<Q>(number, unit).filter(|&number| number > 0.0))
+        put(Some(&mut self.value), in_si::<Q>(number, unit).filter(|&number| number >= 0.0))
     }
 }
 
