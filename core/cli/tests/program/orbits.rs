@@ -246,10 +246,10 @@ fn times_may_be_in_orbits() {
         ("duration = \"3 orbis\"\nstep = 7", "orbis"),
     ] {
         let told = refused(&folder, &text.replace("duration = 7800\nstep = 10.0", run));
-        assert!(told.contains(message) && told.contains("top.toml:7:"), "{run}: {told}");
+        assert!(told.contains(message) && told.contains("top.toml:8:"), "{run}: {told}");
     }
     let free = in_orbits.split("[gravity_gradient]").next().unwrap();
-    assert!(refused(&folder, free).contains("top.toml:7:12: the file has no table `[orbit]`: give a time in s"));
+    assert!(refused(&folder, free).contains("top.toml:8:12: the file has no table `[orbit]`: give a time in s"));
 }
 
 /// The number behind these words in a text.
@@ -269,7 +269,7 @@ fn the_end_of_steps_per_orbit_is_estimated() {
     };
     let quaternion = |row: &[f64]| Quaternion::new(row[1], row[2], row[3], row[4]);
     let exact = quaternion(rows(&folder, &by(6400)).last().unwrap());
-    for steps in [200, 225] {
+    for steps in [400, 425] {
         let end = quaternion(rows(&folder, &by(steps)).last().unwrap());
         let told = printed(&folder, &["run", "scene.toml", "--out", "."]);
         let found = number_behind(&told, "the end is off by about ");

@@ -167,6 +167,10 @@ impl Parameter for Direction {}
 impl<F: Parameter, T> Parameter for VectorInTime<F, T> {
     const UNIT: Option<&'static str> = F::UNIT;
 
+    fn put(&mut self, component: usize, number: f64, unit: &str) -> bool {
+        if let Self::Fixed(vector) = self { vector.put(component, number, unit) } else { false }
+    }
+
     fn is_on_orbit(&self) -> bool {
         matches!(self, Self::Turns(_))
     }
