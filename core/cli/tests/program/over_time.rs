@@ -325,20 +325,25 @@ fn steps_per_orbit_are_those_of_one_body() {
         "title = \"One\"\n{start}{torque}body = {{ moments = [1, 2, 2.5], kinetic = \"geodesic\" }}\n{orbit}{}",
         run.replace("method = { composition = \"Suzuki 4\" }\n", "")
     );
-    let several = |run: &str| {
+    let dipole = "dipole = { moment = [0.03, 0, 0.01], field = { formula = \"[sin(t), 1, 0.1 * t]\" } }\n";
+    let several = |effect: &str, run: &str| {
         format!(
             "title = \"Several\"\n{orbit}[[body]]\nname = \"a\"\nm = 3\nmoments = [1, 2, 2.5]\nposition = [0, 0, 0]\n\
-             {start}{torque}{run}"
+             {start}{effect}{run}"
         )
     };
     let plain = run.replace("method = { composition = \"Suzuki 4\" }\n", "");
-    let [alone, among] = [one, several(&plain)].map(|text| rows(&folder, &text));
+    let [alone, among] = [one, several(torque, &plain)].map(|text| rows(&folder, &text));
     println!("{:e}", apart(&alone, &among));
     assert!(alone.len() > 400 && apart(&alone, &among) < 1e-11, "{:e}", apart(&alone, &among));
     let told = printed(&folder, &["run", "scene.toml", "--out", "."]);
     assert!(told.contains("1.5 orbits of 60 s") && told.contains("the end is off by about"), "{told}");
-    // A work that isn't drag has steps back, and each stage its own time.
-    let end = |steps: &str| rows(&folder, &several(&run.replace("300", steps))).last().unwrap()[1..8].to_vec();
+    // A potential has steps back, and each stage its own time.
+    let end = |steps: &str| {
+        rows(&folder, &several(dipole, &run.replace("300", steps).replace("1.5 orbits", "1 orbit"))).last().unwrap()
+            [1..8]
+            .to_vec()
+    };
     let exact = end("1600");
     let off = |steps: &str| end(steps).iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let [coarse, fine] = [off("100"), off("200")];
