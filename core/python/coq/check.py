@@ -27,7 +27,7 @@ def compiled(folder: Path, name: str) -> tuple[str, bool]:
     """What Coq says of a file of the folder, and whether it accepts it."""
     command = ["coqc", "-q", "-noglob", "-R", str(folder), "Liestep", str(folder / f"{name}.v")]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, cwd=folder)
     except subprocess.TimeoutExpired:
         return f"more than {LIMIT} s", False
     return done.stdout + done.stderr, done.returncode == 0
