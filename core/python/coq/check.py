@@ -1,6 +1,7 @@
 """Certificates by Coq: ``python check.py FILE.json … [--mutants]``. One line each, with what was proved, declined or refused, and time.
 
-With ``--mutants`` each operation of a certificate's programs that something reads is changed, one at a time, and has to be refused.
+With ``--mutants N`` every N-th operation that an output of a program needs is changed, one at a time; those that are accepted are
+listed. Operations behind outputs that no stated claim is of are among them.
 """
 
 from __future__ import annotations
@@ -66,11 +67,15 @@ def line(folder: Path, data: dict[str, Any]) -> tuple[str, bool]:
 
 
 def mutants(data: dict[str, Any], step: int) -> Any:
-    """The certificate with one operation changed, for each that an output needs."""
+    """The certificate with one operation changed, for every so many-th that an output needs."""
     for name in ("constants", "target", "newton", "finish", "seen"):
         program = data["programs"][name]
         first = len(program["inputs"]) + len(program["literals"])
-        for at, (sign, *read) in list(enumerate(program["operations"]))[::step]:
+        needed = set(program["outputs"])
+        for at, (_, *read) in reversed(list(enumerate(program["operations"]))):
+            needed |= set(read) if first + at in needed else set()
+        live = [(at, one) for at, one in enumerate(program["operations"]) if first + at in needed]
+        for at, (sign, *read) in live[::step]:
             changed = copy.deepcopy(data)
             other = ["+", *read, *read] if len(read) == 1 else [OTHER[sign], *read]
             changed["programs"][name]["operations"][at] = other

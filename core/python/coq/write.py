@@ -7,6 +7,7 @@ reading of a declared text is the checker's.
 from __future__ import annotations
 
 import json
+import math
 import random
 import sys
 from fractions import Fraction
@@ -321,7 +322,7 @@ def determined(factor: Factor, array: int, at: int) -> list[list[list[Polynomial
     size, places = factor.rows, range(len(factor.generators))
     common = 1
     for entry in (entry for e in factor.listed for entry in e):
-        common = common * entry.denominator // gcd_(common, entry.denominator)
+        common = common * entry.denominator // math.gcd(common, entry.denominator)
     groups = [[k] for k in places] if factor.chart == "product" else [list(places)]
     found = []
     for group in groups:
@@ -338,10 +339,6 @@ def determined(factor: Factor, array: int, at: int) -> list[list[list[Polynomial
                 rows.append(row)
             found.append(rows)
     return found
-
-
-def gcd_(a: int, b: int) -> int:
-    return a if not b else gcd_(b, a % b)
 
 
 def factored(value: int) -> list[int]:
