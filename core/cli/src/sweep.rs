@@ -32,7 +32,7 @@ pub(crate) fn sweep(given: &ArgMatches) -> Result<(), Failure> {
 
 /// Writes the table of a sweep and prints it; returns how many of its scenes stopped.
 fn rows(path: &Path, sweep: &Sweep<Scene>, output: &mut Output) -> Result<usize, Failure> {
-    // Another name than the table of a run.
+    // The table of a sweep has another name than that of a single run.
     let name = name(path, "sweep.csv");
     let (mut file, mut stopped) = (output.grows(&name), 0);
     let points = &sweep.points;

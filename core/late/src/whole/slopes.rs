@@ -145,7 +145,7 @@ impl<B: Backend<f64>> Back<'_, B> {
         add(&mut slopes.by_numbers, by_numbers);
     }
 
-    /// Through the entries of an attitude: `ḡ·g E_k`.
+    /// Adds the derivatives by an attitude, whose entries `g` have the derivatives `ḡ`: `ḡ·g E_k` along each generator.
     pub(super) fn through_attitude(&self, by_entries: &[f64], attitude: &[f64], slopes: &mut Slopes) {
         for factor in &self.codes.factors {
             let (size, first) = (factor.size(), factor.entry);

@@ -34,7 +34,7 @@ pub(crate) enum Distribution {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Kinetic {
-    /// (3.13).
+    /// The kinetic energy of (3.13), quadratic in `F − I`.
     #[default]
     Rigid,
     Cayley,

@@ -59,7 +59,7 @@ impl Distribution {
             return Some((symmetric, false));
         }
         let mut moments = eigenvalues;
-        // A little more than what is lacking, so that the tensor as printed is possible.
+        // The least moment grows by slightly more than it lacks: rounded to printed digits, the tensor is possible, too.
         moments[eigenvalues.imin()] += lack + most * 1e-9;
         Some((eigenvectors * Matrix3::from_diagonal(&moments) * eigenvectors.transpose(), true))
     }

@@ -126,7 +126,7 @@ impl<'a, 'd> Reader<'a, 'd> {
         if node.has_attribute("placement_frame") {
             return Err((place(node), "a model with a `placement_frame` isn't read: give its `pose`".to_owned()));
         }
-        // Names of one model alone are plain.
+        // Names of links have the model's name before them, unless the file has one model alone.
         let around_it = node.parent().filter(|around| !around.has_tag_name("model"));
         let count = |around: Node<'a, 'd>| elements(&around).filter(|other| other.has_tag_name("model")).count();
         let is_alone = around_it.is_some_and(|around| count(around) == 1);

@@ -92,7 +92,7 @@ fn checked(
     errors: &mut Errors,
 ) -> Option<Equations> {
     let motion = Motion::new(declaration, Some(tree).filter(|_| chosen.is_none()), &names, &derived);
-    // A Hamiltonian needs no velocity that has a momentum.
+    // The check that each momentum has a velocity is for Lagrangians: a Hamiltonian has its velocity as a derivative.
     if chosen.is_none() && derived.has_kinetic() && declaration.role != Role::Hamiltonian {
         explain::continuous_kinetic_part(&motion.kinetic_part(), declaration, errors)?;
     }

@@ -56,7 +56,7 @@ impl Canonical {
         if is_long { Err(StepRefusal::TooLong { most: MOST_OPERATIONS }) } else { Ok(programs) }
     }
 
-    /// All programs.
+    /// The programs of the lift, of the momentum, of the advected parameters and of the rates.
     #[must_use]
     pub fn all(&self) -> [&Program; 4] {
         [&self.lifted, &self.momentum, &self.seen, &self.rates]

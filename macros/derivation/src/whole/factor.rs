@@ -70,7 +70,7 @@ impl MatrixFactor {
         &all[self.component..self.component + self.dimension()]
     }
 
-    /// `Σ x_k E_k`.
+    /// The matrix `Σ x_k E_k` of the Lie algebra with these components.
     pub(super) fn hat(&self, words: &mut Words, x: &[Value]) -> Matrix {
         let n = self.size();
         let mut matrix = Matrix::of(n, n, |_, _| Value::ZERO);
