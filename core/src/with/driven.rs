@@ -81,6 +81,10 @@ where
         (self.values)(real(0.0))
     }
 
+    fn time(&self, motion: &MotionOf<S>, kept: &P::Kept) -> Scalar<S> {
+        self.plan.time(motion, kept)
+    }
+
     fn length(&self, scene: &S, motion: &MotionOf<S>, kept: &P::Kept, is_ahead: bool) -> Scalar<S> {
         self.plan.length(scene, motion, kept, is_ahead)
     }
