@@ -34,7 +34,8 @@ A scene is a file of TOML, as this one of a body in space:
   step = 0.01                              # s, or an accuracy
   duration = 10                            # s
 
-Several bodies are tables [[body]] with [[joint]]; further tables are [orbit] with a tle, [[control]], [[wheel]], [[pointing]], [output],
+Several bodies are tables [[body]] with [[joint]], whose torque may change over time, too, or by { formula = \"2 * sin(3 * t)\" }; along an
+[orbit] a duration may be \"3 orbits\". Further tables are [orbit] with a tle, [[control]], [[wheel]], [[pointing]], [output],
 [sweep] and [ensemble]. A key that isn't known is answered by those that its table has. The page of `liestep-scene` has all of them,
 and examples/scenes many scenes.";
 

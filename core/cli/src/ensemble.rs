@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use clap::ArgMatches;
 use liestep::motion::{AnyStepper, Integrator as _};
 use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
-use liestep_scene::{Column, EndHistogram, Mistake, Scene, SceneEnsemble, Spread, Watch};
+use liestep_scene::{Column, EndHistogram, Mistake, Scene, SceneEnsemble, Spread, Watch, visible};
 
 use crate::failure::Failure as ProgramFailure;
 use crate::files::{different_files, folder, name, scenes};
@@ -32,6 +32,9 @@ pub(crate) fn ensemble(given: &ArgMatches, only_tells: bool) -> Result<(), Progr
     if !only_tells {
         // Without a signal's handler Ctrl-C ends the program, and finished files are kept all the same.
         let _ = interrupt::sets(&stop);
+    }
+    for note in scenes.iter().filter_map(|scene| scene.ensemble()?.note.as_ref()) {
+        eprintln!("note: {}", visible(&note.to_string()));
     }
     if let Some((path, _)) = paths.iter().zip(&scenes).find(|(_, scene)| scene.ensemble().is_none()) {
         return Err(Mistake::no_table(path, "ensemble").into());
@@ -217,11 +220,15 @@ fn told_of(scene: &Scene, drawn: &SceneEnsemble, report: &Report, (is_share, fol
     if !is_share && report.outcome.finished > 0 {
         let _ =
             writeln!(text, "  {:<20}{:>16}{:>16}{:>16}{:>16}", "at the end", "mean", "deviation", "least", "largest");
-        for (_, _, name) in columns(drawn) {
+        for ((_, _, name), listed) in columns(drawn).zip(Column::listed(&drawn.columns)) {
             if let Some(Summary::Moments(moments)) = report.reduced(name) {
-                let spread = moments.variance().sqrt();
-                let [mean, least, largest] = [moments.mean, moments.least, moments.largest];
-                let _ = writeln!(text, "  {name:<20}{mean:>16.6e}{spread:>16.6e}{least:>16.6e}{largest:>16.6e}");
+                // Angles are in degrees, as in the summary of a run.
+                let (unit, size) =
+                    if listed.unit == "rad" { ("deg", 1.0_f64.to_degrees()) } else { (&*listed.unit, 1.0) };
+                let numbers = [moments.mean, moments.variance().sqrt(), moments.least, moments.largest];
+                let [mean, spread, least, largest] = numbers.map(|number| number * size);
+                let line = format!("  {name:<20}{mean:>16.6e}{spread:>16.6e}{least:>16.6e}{largest:>16.6e}  {unit}");
+                let _ = writeln!(text, "{}", line.trim_end());
             }
         }
         for one in &drawn.histograms {

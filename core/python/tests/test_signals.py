@@ -327,3 +327,35 @@ def test_a_function_may_step_another_state():
     plain = heavy_top().stepper(0.01).start(velocity=[0, 0.1, 1])
     plain.step(10)
     assert state.velocity == pytest.approx(plain.velocity, abs=1e-12) and other.steps > 10
+
+
+def pair(torque: object, **run: object) -> dict[str, object]:
+    """Two bodies that turn about one axis against each other."""
+    body = {"m": 2, "position": [0, 0, 0], "start": {"euler": [0, 0, 0], "velocity": [0, 0, 0]}}
+    return {
+        "body": [{"name": "a", "moments": [1, 2, 2.5], **body}, {"name": "b", "moments": [3, 3, 4], **body}],
+        "joint": [{"name": "hinge", "kind": "pin", "bodies": ["a", "b"], "at": np.zeros((2, 3)), "axes": [[0, 0, 1], [0, 0, 1]], "torque": torque}],
+        "run": {"step": 0.4, "duration": 4} | run, "output": {"columns": ["velocity"]},
+    }
+
+
+@pytest.mark.parametrize(("torque", "impulse"), [
+    (ls.signal([0, 0.7, 2.2], [0, 2, 0], between="steps"), 3), (ls.signal([0, 1, 3.1, 5], [0, 1.5, 0, 0], between="lines"), 2.325),
+    (ls.signal(np.linspace(0, 4, 4001), lambda t: t**2, between="lines"), 64 / 3), ({"formula": "t"}, 8), (2, 8)])
+def test_a_motor_between_bodies_has_its_impulse(torque, impulse):
+    run = ls.scene(pair(torque)).run()
+    assert [2.5 * run["a_velocity_z"][-1], 4 * run["b_velocity_z"][-1]] == pytest.approx([-impulse, impulse], rel=1e-6 if impulse > 20 else 1e-13)
+
+
+def test_a_loop_takes_a_motor_over_time_and_a_torque():
+    state = ls.scene(pair(ls.signal([0, 0.7, 2.2], [0, 2, 0], between="steps"))).start()
+    for _ in range(10):
+        state.step(torque={"hinge": 0.5})
+    assert 4 * state.velocity[8] == pytest.approx(3 + 0.5 * 4, abs=1e-12)
+
+
+def test_a_function_of_python_is_no_part_of_a_file():
+    with pytest.raises(ls.SceneError, match=r"a file has signals by values: write `ls.signal\(times, function"):
+        ls.scene(pair(ls.signal(np.sin)))
+    with pytest.raises(ls.SceneError, match="this has no value at the start"):
+        ls.scene(pair({"formula": "1 / t"}))

@@ -18,6 +18,7 @@ mod models;
 mod mutated;
 mod nonholonomic;
 mod orbits;
+mod over_time;
 mod page;
 mod papers;
 mod pointing;

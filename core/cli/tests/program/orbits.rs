@@ -5,7 +5,7 @@ use std::fs;
 
 use nalgebra::{Matrix3, Quaternion, SVector, UnitQuaternion, Vector3};
 
-use crate::called::{folder, printed, refuses, rows, table};
+use crate::called::{folder, printed, refused, refuses, rows, table};
 
 /// s.
 const PERIOD: f64 = 6000.0;
@@ -224,4 +224,58 @@ fn steps_follow_an_orbit() {
     let geodesic = rows(&folder, &text.replace("step = 7800.0", "steps_per_orbit = 400")).pop().unwrap();
     let geodesic = (geodesic[4].atan2(geodesic[1]) - 0.5 * fine).sin().abs();
     assert!(coarse > 9e-4 && geodesic < 1e-4, "{coarse:e} {geodesic:e}");
+}
+
+/// Times in orbits are those in seconds to the bit, and the summary has the orbits with their period.
+#[test]
+fn times_may_be_in_orbits() {
+    let folder = folder("times_may_be_in_orbits");
+    let text = satellite(GRADIENT, [0.0, 0.0, 1.0], 0.1, "euler = [0.9, 0, 0]\nvelocity = [0, 0, 1e-3]", 780);
+    let in_orbits = text.replace("duration = 7800\nstep = 10.0", "duration = \"1.5 orbits\"\nstep = \"0.0025 orbits\"");
+    let in_seconds = text.replace("duration = 7800\nstep = 10.0", "duration = 9000\nstep = 15");
+    assert_eq!(rows(&folder, &in_orbits), rows(&folder, &in_seconds));
+    let told = printed(&folder, &["run", "scene.toml", "--out", "."]);
+    assert!(told.contains("gravity gradient, 1.5 orbits of 6000 s, 600 steps of 15 s"), "{told}");
+    for (run, message) in [
+        (
+            "duration = \"1.5 orbits\"\nstep = 7",
+            "which isn't a whole number of steps of 7 s; the nearest is 9002 s; a `step` may be in orbits",
+        ),
+        ("duration = \"-1 orbit\"\nstep = 7", "a number of orbits is above zero"),
+        ("duration = \"one orbit\"\nstep = 7", "a number of orbits is above zero"),
+        ("duration = \"3 orbis\"\nstep = 7", "orbis"),
+    ] {
+        let told = refused(&folder, &text.replace("duration = 7800\nstep = 10.0", run));
+        assert!(told.contains(message) && told.contains("top.toml:8:"), "{run}: {told}");
+    }
+    let free = in_orbits.split("[gravity_gradient]").next().unwrap();
+    assert!(refused(&folder, free).contains("top.toml:8:12: the file has no table `[orbit]`: give a time in s"));
+}
+
+/// The number behind these words in a text.
+fn number_behind(text: &str, words: &str) -> f64 {
+    let behind = text.split_once(words).unwrap_or_else(|| panic!("{text}")).1;
+    behind.split_whitespace().next().unwrap().parse().unwrap()
+}
+
+/// The error at the end of a run by steps per orbit is that against many more of them.
+#[test]
+fn the_end_of_steps_per_orbit_is_estimated() {
+    let folder = folder("the_end_of_steps_per_orbit_is_estimated");
+    let text = satellite(GRADIENT, [0.0, 0.0, 1.0], 0.4, "euler = [0.9, 0, 0]\nvelocity = [0, 0, 1e-3]", 780);
+    // Whole orbits end at the same place by any number of steps.
+    let by = |steps: u32| {
+        text.replace("duration = 7800\nstep = 10.0", &format!("duration = \"2 orbits\"\nsteps_per_orbit = {steps}"))
+    };
+    let quaternion = |row: &[f64]| Quaternion::new(row[1], row[2], row[3], row[4]);
+    let exact = quaternion(rows(&folder, &by(6400)).last().unwrap());
+    for steps in [400, 425] {
+        let end = quaternion(rows(&folder, &by(steps)).last().unwrap());
+        let told = printed(&folder, &["run", "scene.toml", "--out", "."]);
+        let found = number_behind(&told, "the end is off by about ");
+        let off = 2.0 * (end.conjugate() * exact).imag().norm().min(1.0).asin();
+        println!("{steps}: {found:e} and {off:e}");
+        assert!(found > 0.7 * off && found < 1.4 * off, "{steps}: {found:e} and {off:e}: {told}");
+        assert!(told.contains("on the average show"), "{told}");
+    }
 }

@@ -434,7 +434,7 @@ def scene(path: str | Path | Mapping[str, Any], text: str | None = None) -> Scen
     Parameters
     ----------
     path : str, Path or mapping
-        The file; or the tables that it would have, with numbers, texts with a unit, lists and arrays as values. Mistakes of tables
+        The file; or the tables that it would have, with numbers, texts with a unit, lists, arrays and signals as values. Mistakes of tables
         have the lines of `Scene.text`.
     text : str, optional
         The text of the file, which isn't read then.

@@ -11,6 +11,7 @@ use serde::Deserialize as _;
 use toml::Spanned;
 use toml::de::{DeValue, Deserializer};
 
+use crate::file::bare::bare_angle;
 use crate::file::beginning::Beginning;
 use crate::file::column::Column;
 use crate::file::control::{self, settle};
@@ -35,6 +36,7 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
     let has_several = document.get_ref().get("body").is_some_and(|body| body.get_ref().is_array());
     let read = if has_several { several } else { one_body };
     let mut file = read(path, document, &lines)?;
+    per_orbit(document, &mut file).map_err(located)?;
     let keys = ["accuracy", "steps_per_orbit"];
     let pace = keys.into_iter().find(|key| has(document, "run", key)).unwrap_or("step");
     let at = |keys: &[&str]| lines.place(span(document, keys).start);
@@ -48,8 +50,10 @@ pub(crate) fn scene(path: &Path, text: &str, document: &Document<'_>) -> Result<
         law: file.law_of_no_frame().map_or((1, 1), |span| lines.place(span.start)),
     };
     file.title = or_name(file.title, path);
-    file.origin = Origin { path: path.to_owned(), places };
+    file.origin = Origin { path: path.to_owned(), places, note: None };
     observed(document, &mut file).map_err(located)?;
+    let note = bare_angle(document, &file.all_columns());
+    file.origin.note = note.map(|(span, why)| (lines.place(span.start), why));
     Ok(file)
 }
 
@@ -72,14 +76,13 @@ fn one_body(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -> Result<S
     if file.body.is_none() && lagrangian.is_empty() && hamiltonian.is_empty() {
         return Err(located((document.span(), "missing field `body`".to_owned())));
     }
-    file.run.count(document).map_err(located)?;
+    file.run.count(document, file.orbit.as_ref()).map_err(located)?;
     (file.lagrangian, file.hamiltonian, file.force, file.nonholonomic) = (lagrangian, hamiltonian, force, nonholonomic);
     file.over_time = over_time.into();
     add(document, &mut file).and_then(|()| fixed(&file).map_or(Ok(()), Err)).map_err(located)?;
     if let Some(start) = document.get_ref().get("start") {
         file.start = Beginning::read(start, &file.group, file.orbit.as_ref()).map_err(located)?;
     }
-    per_orbit(document, &mut file).map_err(located)?;
     (file.control, file.wheel) = (control, wheel);
     Ok(file)
 }
@@ -121,6 +124,7 @@ fn observed(document: &Document<'_>, file: &mut SceneFile) -> Result<(), SpanMes
     }
     at_odds(document, file).map_or(Ok(()), Err)?;
     file.over_time.iter().find_map(|one| of_signal(one, file)).map_or(Ok(()), Err)?;
+    file.set_over([0.0, 0.0]);
     let default: &[&str] = if file.system.is_some() { &DEFAULT_OF_SEVERAL } else { &DEFAULT };
     file.columns = file.output.columns(&columns, default)?;
     if let Some(system) = file.system.as_mut().map(Arc::make_mut) {
@@ -244,12 +248,13 @@ fn named_method(document: &Document<'_>) -> Option<String> {
 /// The mistake of a parameter that can't have the values of its signal, or has none during the run.
 fn of_signal(one: &OverTime, file: &SceneFile) -> Option<SpanMessage> {
     let mut scratch = file.clone();
-    let (OverTime { table, key, span, .. }, signal) = (one, one.signal()?);
-    let mut values = signal.values().chunks(signal.width());
+    let OverTime { table, key, span, .. } = one;
     let wrong = |message: String| Some((span.clone(), message));
-    if !values.next().is_some_and(|first| scratch.set_one(one, first)) {
+    if !scratch.set_one(one, &one.stand_in()) {
         return wrong(format!("`{key}` of `{table}` can't change with time"));
     }
+    let signal = one.signal()?;
+    let mut values = signal.values().chunks(signal.width());
     if let Some(value) = values.find(|value| !scratch.set_one(one, value)) {
         return wrong(format!("`{key}` of `{table}` can't be {value:?}"));
     }

@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue};
 use crate::file::column::Column;
 use crate::file::effects::EFFECTS;
 use crate::file::histogram::{self, EndHistogram};
-use crate::file::mistake::SpanMessage;
+use crate::file::mistake::{Mistake, SpanMessage};
 use crate::file::quantity::ratio;
 use crate::file::scene::SceneFile;
 use crate::file::tables::{Keys, dotted, ends, measured};
@@ -32,6 +32,8 @@ pub struct SceneEnsemble {
     pub histograms: Vec<EndHistogram>,
     /// The columns of members: those that the file lists, or those of its runs that a member has.
     pub columns: Vec<Column>,
+    /// A remark about a histogram of an angle by numbers alone, with its place.
+    pub note: Option<Mistake>,
     /// A text that identifies the ensemble: the file's values but its title and the number of members, and those of its
     /// signals.
     pub identity: String,
@@ -164,6 +166,7 @@ pub(crate) fn parts((path, text): (&Path, &str), table: &Spanned<DeValue<'_>>) -
         chunk: None,
         histograms: Vec::new(),
         columns: Vec::new(),
+        note: None,
         identity: String::new(),
         text,
         axes: Vec::new(),

@@ -1,5 +1,7 @@
 //! The list of the effects with their tables in a file. Every other list of effects is generated from it.
 
+use std::sync::Arc;
+
 use liestep::effects::{
     AirDrag, Dipole, Drag, Gravity, GravityGradient, MagneticDamping, Rotor, Spring, Thrust, Torque,
 };
@@ -28,6 +30,9 @@ pub(crate) trait Table {
 
     /// Sets a number in this key and component, see [`Parameter::put`](crate::file::orbit::Parameter::put).
     fn put(&mut self, place: (&str, usize), number: f64, unit: &str) -> bool;
+
+    /// A copy of the parameters, which nothing else refers to.
+    fn copied(&self) -> Arc<dyn Table + Send + Sync>;
 }
 
 /// Passes the list to a macro, after the macro's own arguments. An entry has the effect's table, its keys with their
@@ -137,6 +142,10 @@ macro_rules! tables {
                         $(stringify!($field) => self.$field.put(component, number, unit),)+
                         _ => false,
                     }
+                }
+
+                fn copied(&self) -> Arc<dyn Table + Send + Sync> {
+                    Arc::new(*self)
                 }
             }
         )+

@@ -6,6 +6,7 @@ use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeArray, DeTable, DeValue};
 
+use crate::file::bare::read_as_rad;
 use crate::file::column::Column;
 use crate::file::control::{Motor, Wheel};
 use crate::file::document;
@@ -200,7 +201,12 @@ pub(crate) fn read(
     of_columns(&ensemble, scene, &|keys| span(document, keys)).map_or(Ok(()), Err).map_err(located)?;
     for one in &mut ensemble.histograms {
         let unit = scene.columns().iter().find_map(|column| column.unit(&one.column)).unwrap_or_default();
+        let is_bare = one.unit.is_empty();
         one.in_unit(unit).map_or(Ok(()), |message| Err(located((one.span.clone(), message))))?;
+        if is_bare && unit == "rad" && ensemble.note.is_none() {
+            let note = located((one.span.clone(), read_as_rad(one.written[1])));
+            ensemble.note = Some(note);
+        }
     }
     let written = table.get_ref().as_table().and_then(|table| table.get("every"));
     if let (Some(every), Some(steps), Some(value)) = (ensemble.every, scene.steps(), written)

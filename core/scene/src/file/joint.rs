@@ -8,6 +8,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::mistake::SpanMessage;
+use crate::file::orbit::put;
 use crate::file::quantity::{
     Angle, Damping, Direction, Force, Length, LinearDamping, PositiveScalar, Quantity, Rate, Scalar, Speed, Stiffness,
     Torque, Triple, TurningStiffness, short,
@@ -382,6 +383,21 @@ impl Joint {
         let start = Coordinates { angle: -angle, rate: -rate, shift: -shift, speed: -speed };
         let limits = limits.map(|limits| Limits { ends: [-limits.ends[1], -limits.ends[0]], ..limits });
         Self { at, axes, zero: zero.transpose(), terms, limits, start, sign: -self.sign, ..self }
+    }
+
+    /// Sets a value over time, with the sign that the file has; returns whether it can have this number.
+    pub(crate) fn put(&mut self, key: &str, number: f64) -> bool {
+        let (terms, signed) = (&mut self.terms, self.sign * number);
+        let or_off = Some(number).filter(|number| *number >= 0.0);
+        match key {
+            "torque" | "force" => put(terms.effort.as_mut(), Some(signed)),
+            "rest" => put(Some(&mut terms.rest), Some(signed)),
+            "damping" => put(terms.damping.as_mut(), or_off),
+            "stiffness" => put(terms.stiffness.as_mut(), or_off),
+            "friction.torque" => put(terms.friction.as_mut().map(|[torque, _]| torque), or_off),
+            "friction.below" => put(terms.friction.as_mut().map(|[_, below]| below), or_off.filter(|rate| *rate > 0.0)),
+            _ => false,
+        }
     }
 
     /// The angle about the axis, rad, from −π to π, and the shift along it, m, between bodies in these poses.

@@ -150,16 +150,22 @@ pub(crate) struct Law {
 impl Law {
     /// The law of a text, in which these names have values of these kinds, and which has this kind itself.
     pub(crate) fn parse(text: &str, names: &[(String, Kind)], kind: Kind) -> Result<Self, String> {
+        match (Self::of(text, names)?, kind) {
+            ((law, found), expected) if found == expected => Ok(law),
+            (_, Kind::Vector) => Err("a torque is a vector, as `-kd * Omega` or `[0, 0, -k * Omega[2]]`".to_owned()),
+            (_, Kind::Number) => Err("the torque of a wheel is a number, as `-k * Omega[2]`".to_owned()),
+        }
+    }
+
+    /// The expression of a text, in which these names have values of these kinds, with its own kind.
+    pub(crate) fn of(text: &str, names: &[(String, Kind)]) -> Result<(Self, Kind), String> {
         let mut parser = Parser { tokens: tokens(text)?, place: 0, names, depth: 0 };
         let node = parser.sum()?;
         if let Some(token) = parser.next() {
             return Err(format!("`{}` isn't expected behind an expression", token.written()));
         }
-        match (kind_of(&node, names)?, kind) {
-            (found, expected) if found == expected => Ok(Self { node }),
-            (_, Kind::Vector) => Err("a torque is a vector, as `-kd * Omega` or `[0, 0, -k * Omega[2]]`".to_owned()),
-            (_, Kind::Number) => Err("the torque of a wheel is a number, as `-k * Omega[2]`".to_owned()),
-        }
+        let kind = kind_of(&node, names)?;
+        Ok((Self { node }, kind))
     }
 
     /// The value with these values of the names.

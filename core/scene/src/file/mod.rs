@@ -1,5 +1,6 @@
 //! Scene files: the tables of a document as types, and the mistakes in them with their places.
 
+pub(crate) mod bare;
 pub(crate) mod beginning;
 pub(crate) mod body;
 pub(crate) mod column;

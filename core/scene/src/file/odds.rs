@@ -25,12 +25,8 @@ pub(crate) fn at_odds(document: &Document<'_>, file: &SceneFile) -> Option<SpanM
 /// Keys of a run that several bodies don't have.
 fn of_several(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     file.system.as_ref()?;
-    let keys = [
-        ("steps_per_orbit", "`steps_per_orbit` are those of one body on an orbit: give a `step` or an `accuracy`"),
-        ("density", "a `density` is that of one body: leave it out"),
-    ];
-    let (key, message) = keys.into_iter().find(|(key, _)| has(document, "run", key))?;
-    Some((span(document, &["run", key]), message.to_owned()))
+    let is_there = has(document, "run", "density");
+    is_there.then(|| (span(document, &["run", "density"]), "a `density` is that of one body: leave it out".to_owned()))
 }
 
 /// Conflicts with a step or an accuracy.

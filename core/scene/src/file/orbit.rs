@@ -141,11 +141,12 @@ impl<Q: Quantity> Parameter for Scalar<Q> {
     }
 }
 
+/// Over time zero is a term that is off.
 impl<Q: Quantity> Parameter for PositiveScalar<Q> {
     const UNIT: Option<&'static str> = si::<Q>();
 
     fn put(&mut self, _: usize, number: f64, unit: &str) -> bool {
-        put(Some(&mut self.value), in_si::<Q>(number, unit).filter(|&number| number > 0.0))
+        put(Some(&mut self.value), in_si::<Q>(number, unit).filter(|&number| number >= 0.0))
     }
 }
 
@@ -165,6 +166,10 @@ impl Parameter for Direction {}
 
 impl<F: Parameter, T> Parameter for VectorInTime<F, T> {
     const UNIT: Option<&'static str> = F::UNIT;
+
+    fn put(&mut self, component: usize, number: f64, unit: &str) -> bool {
+        if let Self::Fixed(vector) = self { vector.put(component, number, unit) } else { false }
+    }
 
     fn is_on_orbit(&self) -> bool {
         matches!(self, Self::Turns(_))

@@ -12,6 +12,7 @@ use toml::de::{DeTable, DeValue, ValueDeserializer};
 
 use crate::file::effects::EFFECTS;
 use crate::file::kepler::Orbit;
+use crate::file::law::{Kind, Law, Value};
 use crate::file::mistake::SpanMessage;
 use crate::file::orbit::{DipoleField, Nadir, towards_mass};
 use crate::file::parameter::in_value;
@@ -21,9 +22,10 @@ use crate::file::tables::Document;
 /// A parameter that changes with time.
 #[derive(Clone)]
 pub(crate) struct OverTime {
-    /// The table: an effect, `lagrangian` or `force`, and its number among several.
+    /// The table: an effect, `lagrangian`, `joint` or another, and its number among several.
     pub(crate) table: String,
     pub(crate) number: usize,
+    /// The key; that of a table in this table has both names, as `dipole.field` of a `body`.
     pub(crate) key: String,
     change: Change,
     /// The place of the value.
@@ -33,6 +35,7 @@ pub(crate) struct OverTime {
 #[derive(Clone)]
 enum Change {
     Signal(Signal),
+    Formula(Law),
     Direction(Orbit),
     Field(Orbit, DipoleField),
 }
@@ -62,7 +65,7 @@ enum Way {
 }
 
 const KEYS: &str = "a signal has `times`, `values` and `between`, \"steps\" or \"lines\"; or in the place of times and values \
-                    a `csv`, the name of its column of the `time` and its `columns`";
+                    a `csv`, the name of its column of the `time` and its `columns`; or a `formula` over the time `t` alone";
 
 /// Replaces parameters over time by their values at the start, and returns them. Files are looked for beside the scene.
 pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverTime>, SpanMessage> {
@@ -71,16 +74,16 @@ pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverT
     let context = (path, orbit.as_ref());
     for (name, tables) in document.get_mut().iter_mut() {
         let name = name.get_ref().to_string();
-        let is_own = ["lagrangian", "hamiltonian", "force", "nonholonomic"].contains(&name.as_str());
-        if !is_own && !EFFECTS.iter().any(|effect| effect.key == name) {
+        let is_of_several = tables.get_ref().is_array() && OF_SEVERAL.contains(&name.as_str());
+        if !is_of_several && !OWN.contains(&name.as_str()) && !EFFECTS.iter().any(|effect| effect.key == name) {
             continue;
         }
         match tables.get_mut() {
-            DeValue::Table(table) => of_table((&name, 0, is_own), table, context, &mut all)?,
+            DeValue::Table(table) => of_table((&name, 0, ""), table, context, &mut all)?,
             DeValue::Array(several) => {
                 for (number, table) in several.iter_mut().enumerate() {
                     if let DeValue::Table(table) = table.get_mut() {
-                        of_table((&name, number, is_own), table, context, &mut all)?;
+                        of_table((&name, number, ""), table, context, &mut all)?;
                     }
                 }
             }
@@ -90,30 +93,47 @@ pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverT
     Ok(all)
 }
 
+/// Tables of a file's own declarations.
+const OWN: [&str; 4] = ["lagrangian", "hamiltonian", "force", "nonholonomic"];
+/// Tables of several bodies.
+const OF_SEVERAL: [&str; 3] = ["body", "joint", "spring"];
+
+/// Takes the parameters of a table by its name and its number among several; keys begin with the prefix.
 fn of_table(
-    (name, number, is_own): (&str, usize, bool),
+    (name, number, prefix): (&str, usize, &str),
     table: &mut DeTable<'_>,
     (path, orbit): (&Path, Option<&Spanned<DeValue<'_>>>),
     all: &mut Vec<OverTime>,
 ) -> Result<(), SpanMessage> {
+    let is_own = OWN.contains(&name);
     for (key, value) in table.iter_mut() {
         let source = || ValueDeserializer::from(value.clone());
         // The text of a declaration isn't a parameter.
-        let is_word = Nadir::deserialize(source()).is_ok() && !TEXTS.contains(&key.get_ref().as_ref());
+        let is_word = is_own && Nadir::deserialize(source()).is_ok() && !TEXTS.contains(&key.get_ref().as_ref());
         let change = if let Some(signal) = of_value(value, path)? {
             Change::Signal(signal)
-        } else if is_own && is_word {
+        } else if let Some(formula) = value.get_ref().get("formula") {
+            Change::Formula(of_formula(formula, value)?)
+        } else if is_word {
             Change::Direction(of_scene(orbit, value)?)
         } else if is_own && value.get_ref().get("equator").is_some() {
             let dipole = DipoleField::deserialize(source()).map_err(|error| in_value(value, &error))?;
             Change::Field(of_scene(orbit, value)?, dipole)
         } else {
+            if let DeValue::Table(inner) = value.get_mut()
+                && !is_own
+            {
+                of_table((name, number, &format!("{prefix}{}.", key.get_ref())), inner, (path, orbit), all)?;
+            }
             continue;
         };
-        let (key, span) = (key.get_ref().to_string(), value.span());
+        let (key, span) = (format!("{prefix}{}", key.get_ref()), value.span());
         let over = OverTime { table: name.to_owned(), number, key, change, span: span.clone() };
-        let mut first = over.numbers([over.begin(), 0.0]);
-        let text = if let [one] = first[..] { format!("{one:?}") } else { format!("{:?}", std::mem::take(&mut first)) };
+        let first = over.stand_in();
+        if !first.iter().all(|number| number.is_finite()) {
+            return Err((span, format!("this has no value at the start, but {first:?}")));
+        }
+        let text = if let [one] = first[..] { format!("{one:?}") } else { format!("{first:?}") };
         // Tables borrow their text.
         let text: &'static str = Box::leak(format!("value = {text}").into());
         let read = DeTable::parse(text).ok().and_then(|mut table| table.get_mut().remove("value"));
@@ -174,6 +194,17 @@ fn signal(value: &Spanned<DeValue<'_>>, path: &Path) -> Result<Signal, SpanMessa
     Signal::new(times, values, between).map_err(|error| wrong(error.to_string()))
 }
 
+/// The formula of a text over the time `t`, alone in its table.
+fn of_formula(formula: &Spanned<DeValue<'_>>, value: &Spanned<DeValue<'_>>) -> Result<Law, SpanMessage> {
+    let wrong = |message: String| (formula.span(), message);
+    let is_alone = value.get_ref().as_table().is_some_and(|table| table.len() == 1);
+    let text = formula.get_ref().as_str().filter(|_| is_alone).ok_or_else(|| wrong(FORMULA.to_owned()))?;
+    Law::of(text, &[("t".to_owned(), Kind::Number)]).map(|(law, _)| law).map_err(wrong)
+}
+
+const FORMULA: &str =
+    "a formula is a text over the time `t` in SI units, alone in its table: `{ formula = \"0.2 * sin(3 * t)\" }`";
+
 /// The numbers of each value.
 fn listed(signal: &Spanned<DeValue<'_>>) -> Result<Vec<Vec<f64>>, SpanMessage> {
     let Some(values) = signal.get_ref().get("values") else { return Ok(Vec::new()) };
@@ -227,12 +258,28 @@ impl OverTime {
         if let Change::Signal(signal) = &self.change { signal.ends()[0].max(0.0) } else { 0.0 }
     }
 
-    /// Whether the parameter follows the orbit.
-    pub(crate) const fn is_on_orbit(&self) -> bool {
-        !matches!(self.change, Change::Signal(_))
+    /// Numbers in the place of the value while the file is read: those of the start, and for zero another value of the signal, as
+    /// a term that is off at times has a number above zero in a file.
+    pub(crate) fn stand_in(&self) -> Vec<f64> {
+        let first = self.numbers([self.begin(), 0.0]);
+        let is_on = |value: &&[f64]| value.iter().any(|number| *number != 0.0);
+        let values = self.signal().filter(|_| !is_on(&first.as_slice()));
+        let other = values.and_then(|signal| signal.values().chunks(signal.width()).find(is_on));
+        other.map_or(first, <[f64]>::to_vec)
     }
 
-    /// The means over a step of this start and length, s; along an orbit the values in its middle.
+    /// The subject of the change in words: the table, and of one of several bodies the effect on it.
+    pub(crate) fn subject(&self) -> String {
+        let effect = self.key.split_once('.').filter(|_| self.table == "body").map(|(effect, _)| effect);
+        effect.unwrap_or(&self.table).replace('_', " ")
+    }
+
+    /// Whether the parameter follows the orbit.
+    pub(crate) const fn is_on_orbit(&self) -> bool {
+        matches!(self.change, Change::Direction(_) | Change::Field(..))
+    }
+
+    /// The means over a step of this start and length, s; by a formula and along an orbit the values in its middle.
     pub(crate) fn numbers(&self, [start, length]: [f64; 2]) -> Vec<f64> {
         let middle = start + length * 0.5;
         match &self.change {
@@ -245,12 +292,16 @@ impl OverTime {
                 }
                 numbers
             }
+            Change::Formula(law) => match law.value(&[Value::Number(middle)]) {
+                Value::Number(number) => vec![number],
+                Value::Vector(vector) => vector.as_slice().to_vec(),
+            },
             Change::Direction(orbit) => towards_mass(orbit, middle).as_slice().to_vec(),
             Change::Field(orbit, dipole) => dipole.at(orbit, middle).as_slice().to_vec(),
         }
     }
 
-    /// The signal; none along an orbit.
+    /// The signal by values; none by a formula and along an orbit.
     pub(crate) const fn signal(&self) -> Option<&Signal> {
         if let Change::Signal(signal) = &self.change { Some(signal) } else { None }
     }

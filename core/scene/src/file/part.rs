@@ -39,6 +39,18 @@ pub(crate) struct SystemBody {
 /// An effect with its parameters.
 pub(crate) type BodyEffect = (&'static EffectEntry, Arc<dyn Table + Send + Sync>);
 
+impl SystemBody {
+    /// Sets a component of a parameter of an effect, by a key as `dipole.field`; returns whether it can have this number.
+    pub(crate) fn put(&mut self, key: &str, component: usize, number: f64) -> bool {
+        let Some((effect, key)) = key.split_once('.') else { return false };
+        let Some((_, table)) = self.effects.iter_mut().find(|(entry, _)| entry.key == effect) else { return false };
+        if Arc::get_mut(table).is_none() {
+            *table = table.copied();
+        }
+        Arc::get_mut(table).is_some_and(|table| table.put((key, component), number, ""))
+    }
+}
+
 /// A joint or a spring between two bodies, by their numbers; `None` is space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Between<T> {

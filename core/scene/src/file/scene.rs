@@ -138,6 +138,8 @@ effects! { scene_file
 pub(crate) struct Origin {
     pub(crate) path: PathBuf,
     pub(crate) places: Places,
+    /// A remark about the file, with its line and column.
+    pub(crate) note: Option<((usize, usize), String)>,
 }
 
 /// Lines and columns of keys, from one.
@@ -223,7 +225,7 @@ impl SceneFile {
     /// The first term that changes with time, by its table; none in a scene without any.
     pub(crate) fn changing(&self) -> Option<String> {
         let turning = self.turning().next().map(|[effect, _]| effect.replace('_', " "));
-        turning.or_else(|| self.over_time.first().map(|one| one.table.replace('_', " ")))
+        turning.or_else(|| self.over_time.first().map(OverTime::subject))
     }
 
     /// Sets all parameters over time to their means over a step of this start and length, s; at a time by the length 0.
@@ -241,6 +243,12 @@ impl SceneFile {
             "force" => &mut self.force,
             "nonholonomic" => &mut self.nonholonomic,
             table => {
+                // The gradient of several bodies is a table of the file, as that of one.
+                let system = self.system.as_mut().filter(|_| table != "gravity_gradient").map(Arc::make_mut);
+                if let Some(system) = system {
+                    let place = (table, one.number, one.key.as_str());
+                    return numbers.iter().enumerate().all(|(at, &number)| system.put(place, at, number));
+                }
                 return numbers.iter().enumerate().all(|(at, &number)| self.put([table, &one.key], at, number, ""));
             }
         };

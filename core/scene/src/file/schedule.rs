@@ -3,8 +3,10 @@
 use std::num::NonZeroU32;
 
 use liestep::with::Scheme;
-use serde::Deserialize;
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
 
+use crate::file::kepler::Orbit;
 use crate::file::method::scheme;
 use crate::file::mistake::SpanMessage;
 use crate::file::quantity::{Duration, Number, PositiveScalar, Rate, short};
@@ -26,6 +28,8 @@ pub(crate) struct Schedule {
     pub(crate) density: Option<Density>,
     /// Whether joints that are open at the start are closed.
     pub(crate) nearest: bool,
+    /// Whether duration and step are numbers of orbits until the orbit is known.
+    in_orbits: [bool; 2],
 }
 
 /// A density of steps, by the names of [`liestep::with::densities`].
@@ -51,14 +55,35 @@ impl Default for Pace {
     }
 }
 
+/// A time above zero: in s, or as a number of orbits, `"3 orbits"`.
+struct Time {
+    number: f64,
+    in_orbits: bool,
+}
+
+impl<'de> Deserialize<'de> for Time {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        let value = toml::Value::deserialize(source)?;
+        let words = value.as_str().and_then(|text| text.trim().split_once(' '));
+        if let Some((number, _)) = words.filter(|(_, unit)| ["orbit", "orbits"].contains(&unit.trim())) {
+            let number = number.parse::<f64>().ok().filter(|number| *number > 0.0 && number.is_finite());
+            let number = number.ok_or_else(|| D::Error::custom("a number of orbits is above zero, as \"3 orbits\""))?;
+            return Ok(Self { number, in_orbits: true });
+        }
+        let time = PositiveScalar::<Duration>::deserialize(value);
+        let number = time.map_err(|error| D::Error::custom(error.message()))?.value;
+        Ok(Self { number, in_orbits: false })
+    }
+}
+
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ScheduleTable {
-    step: Option<PositiveScalar<Duration>>,
+    step: Option<Time>,
     accuracy: Option<PositiveScalar<Number>>,
     steps_per_orbit: Option<NonZeroU32>,
     density: Option<Density>,
-    duration: PositiveScalar<Duration>,
+    duration: Time,
     #[serde(default, deserialize_with = "scheme")]
     method: Scheme,
     #[serde(default)]
@@ -72,24 +97,38 @@ const MOST_STEPS: f64 = 1e8;
 
 impl From<ScheduleTable> for Schedule {
     fn from(table: ScheduleTable) -> Self {
-        let duration = table.duration.value;
+        let duration = table.duration.number;
+        let in_orbits = [table.duration.in_orbits, table.step.as_ref().is_some_and(|step| step.in_orbits)];
         let is_left_open = table.step.is_none() && table.accuracy.is_none() && table.steps_per_orbit.is_none();
         let pace = match (table.step, table.accuracy) {
             // Replaced when the orbit is known.
             _ if table.steps_per_orbit.is_some() => Pace::Step { step: duration, steps: 1 },
             // Counted by `count`.
-            (Some(step), _) => Pace::Step { step: step.value, steps: 1 },
+            (Some(step), _) => Pace::Step { step: step.number, steps: 1 },
             (None, Some(accuracy)) => Pace::Accuracy(accuracy.value),
             (None, None) => Pace::Accuracy(DEFAULT_ACCURACY),
         };
         let ScheduleTable { method, steps_per_orbit, density, nearest, .. } = table;
-        Self { duration, pace, is_left_open, method, steps_per_orbit, density, nearest }
+        Self { duration, pace, is_left_open, method, steps_per_orbit, density, nearest, in_orbits }
     }
 }
 
 impl Schedule {
-    /// Counts the steps of the file's `step`.
-    pub(crate) fn count(&mut self, document: &Document<'_>) -> Result<(), SpanMessage> {
+    /// Counts the steps of the file's `step`, where times may be in orbits.
+    pub(crate) fn count(&mut self, document: &Document<'_>, orbit: Option<&Orbit>) -> Result<(), SpanMessage> {
+        for (key, in_orbits) in ["duration", "step"].into_iter().zip(self.in_orbits) {
+            if !in_orbits {
+                continue;
+            }
+            let none =
+                || (span(document, &["run", key]), "the file has no table `[orbit]`: give a time in s".to_owned());
+            let period = orbit.ok_or_else(none)?.period();
+            match (key, &mut self.pace) {
+                ("step", Pace::Step { step, .. }) => *step *= period,
+                ("step", Pace::Accuracy(_)) => {}
+                _ => self.duration *= period,
+            }
+        }
         if let (Pace::Step { step, steps }, None) = (&mut self.pace, self.steps_per_orbit) {
             *steps =
                 equal_steps(*step, self.duration).map_err(|message| (span(document, &["run", "step"]), message))?;
@@ -107,7 +146,9 @@ impl Schedule {
             && !has_steps_of_its_own
             && let Some(message) = fraction(step, self.duration)
         {
-            return wrong("duration", message);
+            let advice = "; a `step` may be in orbits, too, as \"0.001 orbits\"";
+            let advice = if self.in_orbits[0] && !self.in_orbits[1] { advice } else { "" };
+            return wrong("duration", message + advice);
         }
         if matches!(self.pace, Pace::Accuracy(_)) && has(document, "run", "method") {
             let message =

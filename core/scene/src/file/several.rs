@@ -75,7 +75,9 @@ struct SpringTable {
 /// The scene of a document with several bodies, but for what is seen of it.
 pub(crate) fn several(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -> Result<SceneFile, Mistake> {
     let located = |(span, message): SpanMessage| Mistake::at(path, lines.place(span.start), message);
-    let table = SystemTable::deserialize(Deserializer::from(document.clone()))
+    let mut rest = document.clone();
+    let over_time = over_time::take(&mut rest, path).map_err(located)?;
+    let table = SystemTable::deserialize(Deserializer::from(rest))
         .map_err(|error| Mistake::of_toml(path, lines.text, &error))?;
     let place = |span: Range<usize>| lines.place(span.start);
     let places = SystemPlaces {
@@ -89,7 +91,7 @@ pub(crate) fn several(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -
     let system = of_tables((table.body, orbit.is_some()), table.joint, table.spring, places).map_err(located)?;
     let observed = SceneFile { title, run, pointing, picture, event, output, ..SceneFile::default() };
     let mut file = SceneFile { orbit, control, wheel, gravity_gradient, ..observed };
-    file.run.count(document).map_err(located)?;
+    file.run.count(document, file.orbit.as_ref()).map_err(located)?;
     // Three coordinates of each place are in front.
     let bodies = system.bodies.len();
     file.group.quaternions = (0..bodies).map(|body| 3 * bodies + 4 * body).collect();
@@ -103,6 +105,7 @@ pub(crate) fn several(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -
         return Err(located((span.clone(), message)));
     }
     file.system = Some(Arc::new(System { gravity, ..system }));
+    file.over_time = over_time.into();
     Ok(file)
 }
 

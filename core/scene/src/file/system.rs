@@ -11,6 +11,7 @@ use crate::file::effects::EffectEntry;
 use crate::file::event::{Event, Quantity};
 use crate::file::joint::{Joint, Kind, Limits};
 use crate::file::mistake::SpanMessage;
+use crate::file::orbit::put;
 use crate::file::part::{Between, SystemBody};
 use crate::file::quantity::round;
 use crate::file::tables::Document;
@@ -27,6 +28,7 @@ use crate::file::tables::Document;
 /// | | in a joint that turns: `damping`, N m s; `stiffness`, N m/rad, with the angle at `rest`; a motor's `torque` about the axis, N m; dry `friction`: its `torque` and the rate `below` which it is viscous. In a slider: `damping`, N s/m; `stiffness`, N/m, with the shift at `rest`; a `force`, N |
 /// | | `limits` of a pin or a slider: `from` and `to`, angles or shifts, and whether the run is to `stop` where the joint passes one of them. They aren't imposed but watched: each passing is an event with the joint's name |
 /// | `[[spring]]` | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
+/// | numbers over time | as for [one body](crate::SceneFile): of `torque`, `force`, `stiffness`, `rest`, `damping` and `friction` in a joint, of a spring, of the effects on a body, and `g` |
 /// | `orbit` | as for [one body](crate::SceneFile): the origin is a place that follows it, and the axes don't turn |
 /// | `gravity_gradient` | as for [one body](crate::SceneFile): it pulls on the inertia of each body, and on its mass away from the origin |
 /// | `[[wheel]]`, `[[control]]`, `[[pointing]]` | as for [one body](crate::SceneFile), with the name of their `body` |
@@ -68,7 +70,29 @@ pub(crate) struct Spring {
     pub(crate) at: [Vector3<f64>; 2],
 }
 
+impl Spring {
+    /// Sets a value over time; returns whether it can have this number. A stiffness of zero is no spring.
+    fn put(&mut self, key: &str, number: f64) -> bool {
+        match key {
+            "k" => put(Some(&mut self.k), Some(number).filter(|k| *k >= 0.0)),
+            "length" => put(Some(&mut self.length), Some(number)),
+            _ => false,
+        }
+    }
+}
+
 impl System {
+    /// Sets a component of a value over time by its table, the number among several, and the key; returns whether it can have
+    /// this number.
+    pub(crate) fn put(&mut self, (table, at, key): (&str, usize, &str), component: usize, number: f64) -> bool {
+        match table {
+            "gravity" => put(self.gravity.as_mut().filter(|_| key == "g").map(|(g, _)| g), Some(number)),
+            "spring" => self.springs.get_mut(at).is_some_and(|spring| spring.of.put(key, number)),
+            "joint" => self.joints.get_mut(at).is_some_and(|joint| joint.of.put(key, number)),
+            _ => self.bodies.get_mut(at).is_some_and(|body| body.put(key, component, number)),
+        }
+    }
+
     /// The names of the bodies.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.bodies.iter().map(|body| body.name.as_str())

@@ -254,11 +254,12 @@ fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) 
     }
 }
 
-/// Several bodies with laws and wheels, or along an orbit.
+/// Several bodies with laws and wheels, along an orbit, or with values over time.
 pub(crate) struct Bodies {
-    file: SceneFile,
-    system: Arc<System>,
-    joined: Multibody,
+    /// The file, whose values over time are those of the last step.
+    file: RefCell<SceneFile>,
+    /// The bodies with joints and springs; none where these or gravity change with time.
+    joined: Option<Multibody>,
     /// The stepper at the time zero.
     first: MultibodyStepper,
     /// The last stepper, with its time and what was held.
@@ -272,13 +273,10 @@ impl Bodies {
     /// The bodies of a file, with steps of `h`, s.
     pub(crate) fn new(file: &SceneFile, system: &Arc<System>, h: f64) -> Result<Self, SetupError> {
         let (first, _) = system.multibody(file, Scheme::Step, h)?;
-        Ok(Self {
-            file: file.clone(),
-            system: Arc::clone(system),
-            joined: system.joined()?.0,
-            first,
-            last: RefCell::default(),
-        })
+        let is_constant =
+            !file.over_time.iter().any(|one| ["joint", "spring", "gravity"].contains(&one.table.as_str()));
+        let joined = is_constant.then(|| system.joined()).transpose()?.map(|(joined, _)| joined);
+        Ok(Self { file: RefCell::new(file.clone()), joined, first, last: RefCell::default() })
     }
 }
 
@@ -296,8 +294,11 @@ impl Mechanism for Bodies {
         {
             return Some(Rc::clone(stepper));
         }
-        let mut system = self.joined.clone();
-        self.system.act(&self.file, &mut system, self.file.at(start + length * 0.5), held).ok()?;
+        let mut file = self.file.borrow_mut();
+        let is_known = file.set_over([start, length]);
+        let of_file = file.system.as_ref().filter(|_| is_known)?;
+        let mut system = self.joined.clone().map_or_else(|| of_file.joined().map(|(joined, _)| joined), Ok).ok()?;
+        of_file.act(&file, &mut system, file.at(start + length * 0.5), held).ok()?;
         let stepper = Rc::new(system.stepper(if length == 0.0 { self.first.step_size() } else { length }).ok()?);
         *last = Some(([start, length], held.to_vec(), Rc::clone(&stepper)));
         Some(stepper)

@@ -4,7 +4,7 @@ use liestep::SetupError;
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::mechanics::Inertia;
 use liestep::motion::{AnyStepper, Integrator as _};
-use liestep::with::{Method, Scheme};
+use liestep::with::{Clock, Method, Scheme};
 use liestep_late::{Question, QuestionError, for_accuracy};
 
 use crate::file::effects::{RotorTable, TorqueTable};
@@ -45,8 +45,7 @@ fn over_time(file: &SceneFile, J: Inertia, h: f64, method: Method) -> Result<Any
     let Data { sum, numbers } = Data::of(file, &J)?;
     let course = Parameters::of(file.clone(), J, sum);
     let whole = |h| Whole::of(sum, &numbers, h, method).map_err(whole_error);
-    let clock = file.run.steps_per_orbit.and_then(|steps| file.orbit?.clock(steps.get()).ok());
-    let driven = match clock {
+    let driven = match clock(file) {
         None => whole(h)?.driven(course),
         Some(clock) => whole(1.0)?.with_clock(clock).driven(course),
     };
@@ -69,7 +68,12 @@ fn with_devices(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop
         return Err(Stop::Setup(SetupError::NotSelfAdjoint));
     }
     let body = OneBody::new(Parameters::of(file.clone(), J, sum), &whole, shares.len());
-    Devices::new(file, (body, 1), (h, shares)).map(AnyStepper::new).map_err(Stop::Setup)
+    Devices::new(file, (body, 1), (h, None, shares)).map(AnyStepper::new).map_err(Stop::Setup)
+}
+
+/// The lengths of steps that are so many per orbit, s.
+pub(crate) fn clock(file: &SceneFile) -> Option<Clock> {
+    file.run.steps_per_orbit.and_then(|steps| file.orbit?.clock(steps.get()).ok())
 }
 
 /// The lengths of the stages of a step, as shares of it.

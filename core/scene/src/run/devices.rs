@@ -2,6 +2,7 @@
 //! wheels exchange with their bodies, and parameters over time.
 
 use liestep::motion::{Layout, Propagator, StepReport};
+use liestep::with::Clock;
 use liestep::{SetupError, StepError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
@@ -77,26 +78,39 @@ pub(crate) struct Devices<M> {
     /// The lengths of the stages as shares of a step: one stage, or those of a composition.
     shares: Vec<f64>,
     layout: Layout,
+    /// The length of a step, s; a mean where a clock has the lengths.
     h: f64,
+    clock: Option<Clock>,
 }
 
 /// Most rounds for the torque of a law at the end of a step.
 const MOST_ROUNDS: u32 = 200;
 const OF_A_LAW: StepError = StepError::NonFinite { what: "torque of a law" };
+const OF_A_SIGNAL: StepError = StepError::NonFinite { what: "value over time" };
 
 impl<M: Mechanism> Devices<M> {
-    /// The stepper of a file with a mechanism of this many bodies, with stages of these shares of a step of `h`, s.
+    /// The stepper of a file with a mechanism of this many bodies, with stages of these shares of a step of `h`, s, or of the
+    /// lengths of a clock.
     pub(crate) fn new(
         file: SceneFile,
         (mechanism, bodies): (M, usize),
-        (h, shares): (f64, Vec<f64>),
+        (h, clock, shares): (f64, Option<Clock>, Vec<f64>),
     ) -> Result<Self, SetupError> {
         if !fit(&file.control, &file.wheel, h) {
             return Err(SetupError::Method { cause: "samples the laws between its steps" });
         }
         let mut layout = mechanism.layout().clone();
         layout.memory += entries(&file.control, &file.wheel);
-        Ok(Self { file, mechanism, bodies, shares, layout, h })
+        Ok(Self { file, mechanism, bodies, shares, layout, h, clock })
+    }
+
+    /// The length of the step ahead of a state, or of that behind it, s; NaN for a slice that is no state.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a number of steps
+    fn step_at(&self, state: &[f64], is_ahead: bool) -> f64 {
+        let Some(clock) = &self.clock else { return self.h };
+        let steps = state.last().map_or(0, |steps| *steps as u64);
+        let length = if is_ahead { clock.length(steps) } else { clock.length_before(steps) };
+        length.unwrap_or(f64::NAN)
     }
 
     /// The state of the mechanism, with the memory of laws and wheels.
@@ -146,7 +160,8 @@ impl<M: Mechanism> Devices<M> {
     /// those of a time.
     fn numbers(&self, span: [f64; 2], momenta: &[f64], torques: &[Vector3<f64>]) -> Result<M::Numbers, StepError> {
         let held = self.file.control.iter().zip(torques).filter(|(control, _)| !control.controller.is_at_ends);
-        self.mechanism.numbers(span, &self.inputs(momenta, held)).ok_or(OF_A_LAW)
+        let cause = if self.file.over_time.is_empty() { OF_A_LAW } else { OF_A_SIGNAL };
+        self.mechanism.numbers(span, &self.inputs(momenta, held)).ok_or(cause)
     }
 
     /// The numbers of a state's time.
@@ -336,7 +351,8 @@ impl<M: Mechanism> Propagator for Devices<M> {
     }
 
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
-        let (mut next, mut memory, report) = self.advance(self.layout.checked(state)?, self.h)?;
+        let length = self.step_at(state, true);
+        let (mut next, mut memory, report) = self.advance(self.layout.checked(state)?, length)?;
         let (steps, last) = (state[state.len() - 1], next.len() - 1);
         next[last] = steps + 1.0;
         memory.part = 0.0;
@@ -349,7 +365,8 @@ impl<M: Mechanism> Propagator for Devices<M> {
         if force.len() != self.layout.components() || !force.iter().all(|part| part.is_finite()) {
             return Err(StepError::NonFinite { what: "control force" });
         }
-        let impulses: Vec<f64> = force.iter().map(|part| part * (self.h * 0.5)).collect();
+        let half = self.step_at(state, true) * 0.5;
+        let impulses: Vec<f64> = force.iter().map(|part| part * half).collect();
         let push = |state: &mut [f64]| {
             let (mut inner, memory) = self.parts(state);
             self.mechanism.push(&self.now(state, &memory)?, &mut inner, &impulses)?;
@@ -364,7 +381,7 @@ impl<M: Mechanism> Propagator for Devices<M> {
     }
 
     fn part(&self, state: &[f64], fraction: f64) -> Result<Box<[f64]>, StepError> {
-        let length = self.h * fraction;
+        let length = self.step_at(state, fraction > 0.0) * fraction;
         // So small a change would be lost in rounding. NaN isn't tiny.
         if fraction.abs() < f64::EPSILON * f64::EPSILON {
             return Ok(self.layout.checked(state)?.into());
@@ -415,8 +432,17 @@ impl<M: Mechanism> Propagator for Devices<M> {
     fn time(&self, state: &[f64]) -> f64 {
         self.layout.checked(state).map_or(f64::NAN, |state| {
             let last = state.len() - 1;
-            self.h * state[last] + state[last - 1]
+            let begin = match &self.clock {
+                None => self.h * state[last],
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a number of steps
+                Some(clock) => clock.time(state[last] as u64),
+            };
+            begin + state[last - 1]
         })
+    }
+
+    fn length(&self, state: &[f64]) -> Option<f64> {
+        self.clock.as_ref().map(|_| self.step_at(state, true))
     }
 
     fn velocity(&self, state: &[f64], velocity: &mut [f64]) {
@@ -452,15 +478,16 @@ impl<M: Mechanism> Propagator for Devices<M> {
     }
 
     fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
-        let (inner, memory, motors) = self.sampled(self.layout.checked(state)?, self.h)?;
+        let h = self.step_at(state, true);
+        let (inner, memory, motors) = self.sampled(self.layout.checked(state)?, h)?;
         // Changes of momenta at the ends of the step act in it here: laws there as at its beginning, and the half of a motor's impulse
         // by which the mean momentum of its wheel differs from that at the end.
         let all = self.file.control.iter().zip(&memory.torques);
-        let mut inputs = self.inputs(&memory.after(&motors, self.h * 0.5), all);
+        let mut inputs = self.inputs(&memory.after(&motors, h * 0.5), all);
         for (wheel, torque) in self.file.wheel.iter().zip(&motors) {
             inputs[wheel.body].torque -= wheel.axis * (torque * 0.5);
         }
-        let numbers = self.mechanism.numbers([self.time(state), self.h], &inputs).ok_or(OF_A_LAW)?;
+        let numbers = self.mechanism.numbers([self.time(state), h], &inputs).ok_or(OF_A_LAW)?;
         self.mechanism.joint_forces(&numbers, &inner)
     }
 }

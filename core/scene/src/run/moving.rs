@@ -57,7 +57,7 @@ impl SceneFile {
         let course = Course { steps, end, stride, columns, listed };
         let mut run = make(&stepper, state, course, |now| sampler(now), self.watches(), listeners)?;
         let note = |(place, why)| Mistake::of_run(&self.origin.path, place, why);
-        run.notes = notes.into_iter().map(note).collect();
+        run.notes = notes.into_iter().chain(self.origin.note.clone()).map(note).collect();
         self.fault(&run).map_or(Ok(run), Err)
     }
 

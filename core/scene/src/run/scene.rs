@@ -154,7 +154,8 @@ impl Scene {
         let events = run.events_in_words(self.events());
         let file = &self.file;
         let ends = |first: &_, last: &_| file.ends_in_words(run, [first, last]) + &events;
-        let ends = run.summary(&file.title, &file.sum(), file.group.unit_of_energy(), ends);
+        let terms = file.sum() + &file.orbits(run);
+        let ends = run.summary(&file.title, &terms, file.group.unit_of_energy(), ends);
         let choice = run.choice.as_ref().map(|choice| {
             let (error, accuracy, method) = (choice.error, choice.accuracy.tolerance, choice.chosen().scheme);
             if self.schedule().is_left_open {

@@ -1,5 +1,6 @@
 //! Error of a run's end, estimated by a second run with other steps (Richardson).
 
+use std::num::NonZeroU32;
 use std::ops::Range;
 
 use nalgebra::Vector3;
@@ -70,26 +71,29 @@ fn largest(run: &Run, parts: Option<&Places>) -> [f64; 3] {
     most
 }
 
-/// The line about the end of a run; `order` is that of its method. `again` simulates a number of steps of a length, s.
-/// A scene on a group other than SO(3) has `parts`.
+/// Largest difference of the times of two samples that are compared, in steps. Clocks of an orbit are integrated, and their times
+/// agree to some digits.
+const SAME_TIME: f64 = 1e-3;
+
+/// The line about the end of a run; `order` is that of its method. `again` simulates by this number of steps in the place of the
+/// first, which is that of the run, or of an orbit. A scene on a group other than SO(3) has `parts`.
 fn line(
     run: &Run,
-    order: u32,
+    (order, steps): (u32, u32),
     parts: Option<&Places>,
-    again: impl Fn(u32, f64) -> Result<Run, Stop>,
+    again: impl Fn(u32) -> Result<Run, Stop>,
 ) -> Option<String> {
-    let steps = u32::try_from(run.steps()).ok().filter(|steps| *steps > 0)?;
     // The second run has half as many steps; twice as many if that isn't a whole number, or if longer steps fail.
-    let longer = (steps % 2 == 0).then(|| again(steps / 2, 2.0 * run.step()).ok()).flatten();
+    let longer = (steps % 2 == 0).then(|| again(steps / 2).ok()).flatten();
     let (second, is_longer) = match longer {
         Some(second) => (second, true),
-        None => (again(steps.checked_mul(2)?, 0.5 * run.step()).ok()?, false),
+        None => (again(steps.checked_mul(2)?).ok()?, false),
     };
     let share = f64::from(2_u32.saturating_pow(order));
     let factor = if is_longer { 1.0 / (share - 1.0) } else { share / (share - 1.0) };
     let [turning, moving, way] = largest(run, parts);
     // Slower motions are rounding errors.
-    let floor = 1e-6 / (f64::from(steps) * run.step());
+    let floor = 1e-6 / run.samples().last()?.time;
     let limits = [ANOTHER, SHARE * turning.max(floor), SHARE * way.max(1e-6), SHARE * moving.max(floor)];
     let another = |Differences(apart): &Differences| {
         let place = if parts.is_some() { "attitude" } else { "position" };
@@ -99,24 +103,26 @@ fn line(
     let mut seconds = second.samples().iter().peekable();
     let mut end = None;
     for sample in run.samples() {
-        let early = |other: &&&Sample| other.time < sample.time - 0.25 * run.step();
+        let early = |other: &&&Sample| other.time < sample.time - SAME_TIME * run.step();
         while seconds.next_if(|other| early(&other)).is_some() {}
-        let Some(other) = seconds.peek().filter(|other| other.time < sample.time + 0.25 * run.step()) else { continue };
+        let is_now = |other: &&&Sample| other.time < sample.time + SAME_TIME * run.step();
+        let Some(other) = seconds.peek().filter(is_now) else { continue };
         let apart = Differences::of(sample, other, parts);
         if let Some(name) = another(&apart) {
             return Some(format!(
-                "  the end isn't determined: by steps of {} s the {name} is another from t = {} s on\n",
+                "  the end isn't determined: by steps of {} s{} the {name} is another from t = {} s on\n",
                 round(second.step()),
+                second.average,
                 round(sample.time)
             ));
         }
         end = Some(apart);
     }
     let [turn, rate, place, speed] = end?.0.map(|apart| apart * factor);
-    let second = round(second.step());
+    let second = format!("{} s{}", round(second.step()), second.average);
     if parts.is_some() {
         return Some(format!(
-            "  the end is off by about {place:.0e} in the attitude and {speed:.0e} in the velocity, as steps of {second} s \
+            "  the end is off by about {place:.0e} in the attitude and {speed:.0e} in the velocity, as steps of {second} \
              show\n"
         ));
     }
@@ -125,25 +131,29 @@ fn line(
     } else {
         String::new()
     };
-    Some(format!(
-        "  the end is off by about {turn:.0e} rad and {rate:.0e} rad/s{shifted}, as steps of {second} s show\n"
-    ))
+    Some(format!("  the end is off by about {turn:.0e} rad and {rate:.0e} rad/s{shifted}, as steps of {second} show\n"))
 }
 
 impl Scene {
     /// A line about the error at the end of a run, estimated by a second run with half as many steps, or twice as many.
-    /// Empty where steps vary or were chosen for an accuracy.
+    /// Empty where steps vary, but for a number of steps per orbit, or were chosen for an accuracy.
     #[must_use]
     pub fn end_error(&self, run: &Run) -> String {
         let file = &self.file;
-        if file.has_steps_of_its_own() || run.choice.is_some() {
+        let per_orbit = file.run.steps_per_orbit;
+        if per_orbit.is_none() && file.has_steps_of_its_own() || run.choice.is_some() {
             return String::new();
         }
-        let again = |steps, step| {
-            let mut second = (**file).clone().unwatched();
-            second.run.pace = Pace::Step { step, steps };
-            second.simulate(Listeners { progress: &mut |_| (), table: None })
+        let of_run = u32::try_from(run.steps()).ok().filter(|steps| *steps > 0);
+        let Some(steps) = of_run.map(|steps| per_orbit.map_or(steps, NonZeroU32::get)) else { return String::new() };
+        let again = |second: u32| {
+            let (share, mut file) = (f64::from(steps) / f64::from(second), (**file).clone().unwatched());
+            file.run.steps_per_orbit = per_orbit.and_then(|_| NonZeroU32::new(second));
+            let of_run = u64::from(second) * run.steps() / u64::from(steps);
+            let pace = u32::try_from(of_run).map(|steps| Pace::Step { step: run.step() * share, steps });
+            file.run.pace = pace.map_err(|_| Stop::Other("too many steps".to_owned()))?;
+            file.simulate(Listeners { progress: &mut |_| (), table: None })
         };
-        line(run, file.order(), file.places().as_ref(), again).unwrap_or_default()
+        line(run, (file.order(), steps), file.places().as_ref(), again).unwrap_or_default()
     }
 }

@@ -10,7 +10,7 @@ use liestep::{SetupError, StepError};
 
 use crate::file::body::Kinetic;
 use crate::file::mistake::Mistake;
-use crate::file::quantity::short;
+use crate::file::quantity::{round, short};
 use crate::file::sample::Sample;
 use crate::file::scene::{Origin, SceneFile};
 use crate::file::system::System;
@@ -70,7 +70,7 @@ impl SceneFile {
 
     /// The mistake for a failed run, with its place in the file.
     pub(crate) fn mistake(&self, stop: Stop) -> Mistake {
-        let Origin { path, places } = &self.origin;
+        let Origin { path, places, .. } = &self.origin;
         let stop = match stop {
             Stop::Table(message) => return Mistake::of_table(path, message),
             stop => stop,
@@ -136,6 +136,14 @@ impl SceneFile {
     /// The failure of a run that came to its end.
     pub(crate) fn fault(&self, run: &Run) -> Option<Stop> {
         self.system.as_ref().and_then(|_| System::fault(run))
+    }
+
+    /// The number of orbits in a run, with their period; nothing without an orbit.
+    pub(crate) fn orbits(&self, run: &Run) -> String {
+        let (Some(orbit), Some(last)) = (&self.orbit, run.samples().last()) else { return String::new() };
+        let (number, period) = (round(last.time / orbit.period()), short(orbit.period()));
+        let orbits = if number == "1" { "orbit" } else { "orbits" };
+        format!(", {number} {orbits} of {period} s")
     }
 
     /// The part of a summary behind the energy: the ends of a run in words.

@@ -18,7 +18,7 @@ use crate::file::sample::{BodySample, Sample};
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
 use crate::run::bodies::Bodies;
-use crate::run::choose::shares;
+use crate::run::choose::{clock, shares};
 use crate::run::devices::Devices;
 use crate::run::make::{Note, Place, Run, Stop, Watch, fast_turn, told};
 use crate::run::motors::{ENTRIES, pose};
@@ -123,12 +123,12 @@ impl System {
         let (stepper, left_out) = self.multibody(file, method, step).map_err(Stop::Setup)?;
         let state = self.start(&stepper, file.run.nearest).map_err(Stop::Start)?;
         let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
-        let of_springs = self.check_springs(&places, file.run.given_step().map(|_| step))?;
+        let of_springs = self.stiffest(file).check_springs(&places, file.run.given_step().map(|_| step))?;
         let start = if is_driven {
             let (layout, mut velocity) = (stepper.layout(), vec![0.0; stepper.layout().components()]);
             Propagator::velocity(&stepper, &state, &mut velocity);
             let bodies = Bodies::new(file, self, step).map_err(Stop::Setup)?;
-            let driven = Devices::new(file.clone(), (bodies, self.bodies.len()), (step, shares(file)));
+            let driven = Devices::new(file.clone(), (bodies, self.bodies.len()), (step, clock(file), shares(file)));
             let any = AnyStepper::new(driven.map_err(Stop::Setup)?);
             let state = any.start(&state[layout.attitude()], &velocity).map_err(Stop::Start)?;
             (any, state)
@@ -241,7 +241,21 @@ fn displaced(attitude: &[f64]) -> Vec<f64> {
     beside
 }
 
+/// Times of a run at which springs are looked at.
+const LOOKS: u32 = 200;
+
 impl System {
+    /// The system with the largest stiffness that each spring has in a run.
+    fn stiffest(self: &Arc<Self>, file: &SceneFile) -> Arc<Self> {
+        let mut stiffest = Arc::clone(self);
+        for one in file.over_time.iter().filter(|one| one.table == "spring" && one.key == "k") {
+            let at = |look: u32| one.numbers([file.run.duration * f64::from(look) / f64::from(LOOKS), 0.0]);
+            let largest = (0..=LOOKS).flat_map(at).fold(0.0, f64::max);
+            Arc::make_mut(&mut stiffest).put(("spring", one.number, "k"), 0, largest);
+        }
+        stiffest
+    }
+
     /// Notes about bodies that turn too far in a step of (3.13).
     fn fast_turns(&self, step: f64) -> impl Iterator<Item = Note> {
         let rigid = self.bodies.iter().zip(&self.places.bodies).filter(|(body, _)| body.kinetic == Kinetic::Rigid);
