@@ -115,7 +115,8 @@ fn mass_alone(m: &Matrix6<f64>) -> Option<f64> {
         bits |= entry.to_bits();
     }
     // The sign of a zero is the highest bit.
-    (bits << 1 == 0 && d[3] == e[4] && e[4] == f[5]).then_some(d[3])
+    let masses = [d[3], e[4], f[5]].map(f64::to_bits);
+    (bits << 1 == 0 && masses == [masses[0]; 3]).then_some(d[3])
 }
 
 /// Adds blocks to the matrix of a body without a ball joint.

@@ -1,4 +1,4 @@
-//! The numbers of a state: attitudes, momenta, the memory for the next guess and of momenta before their projection, and the
+//! The numbers of a state: attitudes, momenta, the memory for the next guess and of momenta before and after their projection, and the
 //! number of steps.
 
 use alloc::vec;
@@ -32,7 +32,7 @@ pub(super) fn layout(bodies: usize, stages: usize) -> Layout {
 
 /// The length of the memory of a stage.
 fn memory(bodies: usize) -> usize {
-    6 * bodies * (3 + DIFFERENCES) + 2
+    6 * bodies * (4 + DIFFERENCES) + 1
 }
 
 /// The places of a state's numbers.
@@ -96,9 +96,8 @@ impl Offsets {
 
     /// Writes the momenta from which the next step starts, whose projection are those of the state.
     pub(super) fn write_unprojected(self, state: &mut [f64], momenta: &[Vector6<f64>]) {
-        let all = self.unprojected(0);
-        state[all.end] = self.seal(state);
-        for (entries, momentum) in state[all].chunks_mut(6).zip(momenta) {
+        self.start_from_momenta(state, 0);
+        for (entries, momentum) in state[self.unprojected(0)].chunks_mut(6).zip(momenta) {
             entries.copy_from_slice(momentum.as_slice());
         }
     }
@@ -106,22 +105,21 @@ impl Offsets {
     /// Lets the next step of a stage start from the state's momenta.
     pub(super) fn start_from_momenta(self, state: &mut [f64], stage: usize) {
         let to = self.unprojected(stage);
-        state[to.end] = self.seal(state);
-        state.copy_within(self.attitudes()..self.attitudes() + 6 * self.bodies, to.start);
+        state.copy_within(self.momenta(), to.start);
+        state.copy_within(self.momenta(), to.end);
     }
 
-    /// A number by which momenta that weren't written by a step are told.
-    #[allow(clippy::cast_precision_loss)] // a number of momenta
-    fn seal(self, state: &[f64]) -> f64 {
-        let momenta = &state[self.attitudes()..][..6 * self.bodies];
-        momenta.iter().enumerate().fold(0.0, |sum, (number, part)| sum + part * (1 + number) as f64)
+    /// The places of the momenta.
+    fn momenta(self) -> Range<usize> {
+        self.attitudes()..self.attitudes() + 6 * self.bodies
     }
 
     /// The momenta from which a step starts: those before their projection, unless those of the state have been changed since then.
     pub(super) fn starting(self, state: &[f64]) -> &[f64] {
-        let unprojected = self.unprojected(0);
-        let is_sealed = state[unprojected.end] == self.seal(state);
-        if is_sealed { &state[unprojected] } else { &state[self.attitudes()..][..6 * self.bodies] }
+        let (unprojected, momenta) = (self.unprojected(0), &state[self.momenta()]);
+        // Behind the momenta before the projection are those after it, as the step wrote them.
+        let written = state[unprojected.end..].iter().take(momenta.len()).map(|part| part.to_bits());
+        if momenta.iter().map(|part| part.to_bits()).eq(written) { &state[unprojected] } else { momenta }
     }
 
     /// The guess of a body's half increment in the first stage.

@@ -120,7 +120,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
             assert!(
                 !P::FACTS.varies || P::FACTS.counts_time,
                 "a force changes the length that a density gives its step"
-            )
+            );
         }
         self.forced(state, force)
     }
