@@ -70,11 +70,11 @@ fn largest(run: &Run, parts: Option<&Places>) -> [f64; 3] {
     most
 }
 
-/// The line about the end of a run; `order` is that of its method. `again` simulates a number of steps of a length, s.
+/// The line about the end of a run; `order` is that of its method, and `size` is the length of the system, m. `again` simulates a number of steps of a length, s.
 /// A scene on a group other than SO(3) has `parts`.
 fn line(
     run: &Run,
-    order: u32,
+    (order, size): (u32, f64),
     parts: Option<&Places>,
     again: impl Fn(u32, f64) -> Result<Run, Stop>,
 ) -> Option<String> {
@@ -90,7 +90,7 @@ fn line(
     let [turning, moving, way] = largest(run, parts);
     // Slower motions are rounding errors.
     let floor = 1e-6 / (f64::from(steps) * run.step());
-    let limits = [ANOTHER, SHARE * turning.max(floor), SHARE * way.max(1e-6), SHARE * moving.max(floor)];
+    let limits = [ANOTHER, SHARE * turning.max(floor), SHARE * way.max(1e-6 * size), SHARE * moving.max(floor * size)];
     let another = |Differences(apart): &Differences| {
         let place = if parts.is_some() { "attitude" } else { "position" };
         let names = ["attitude", "angular velocity", place, "velocity"].into_iter();
@@ -144,6 +144,7 @@ impl Scene {
             second.run.pace = Pace::Step { step, steps };
             second.simulate(Listeners { progress: &mut |_| (), table: None })
         };
-        line(run, file.order(), file.places().as_ref(), again).unwrap_or_default()
+        let size = file.system.as_ref().map_or(1.0, |system| system.size());
+        line(run, (file.order(), size), file.places().as_ref(), again).unwrap_or_default()
     }
 }
