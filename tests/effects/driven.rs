@@ -27,7 +27,7 @@ fn torquer((field, Given(moment)): (Vector3<f64>, Given<f64, 3>)) -> Torquer {
 fn is_the_step_of_such_a_scene<S, P>(make: impl Fn(Torquer) -> Stepper<S, P>)
 where
     S: Scene<Scalar = f64, Group = SO3, Advected = Values>,
-    P: Plan<S> + Steerable,
+    P: Steerable<S>,
 {
     steps_of_such_a_scene(Vector3::new(0.5, -1.0, 2.0), make);
 }
@@ -38,7 +38,7 @@ where
 fn steps_of_such_a_scene<S, P>(velocity: Vector3<f64>, make: impl Fn(Torquer) -> Stepper<S, P>) -> usize
 where
     S: Scene<Scalar = f64, Group = SO3, Advected = Values>,
-    P: Plan<S> + Steerable,
+    P: Steerable<S>,
 {
     let mut random = Random::new(3);
     let own = Torquer { moment: Vector3::zeros(), field: Vector3::zeros() };

@@ -26,7 +26,7 @@ use std::rc::Rc;
 use liestep::delegate_plan;
 use liestep::mechanics::{self, DiscreteLagrangian, Effect, Scalar, SceneVisitor};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme};
-use liestep::motion::{Motion, Plan, StepReport, Summation};
+use liestep::motion::{Motion, Plan, PlanFacts, Runs, StepReport, Summation};
 use liestep::numbers::{Real, Vectors};
 use liestep::prelude::*;
 use nalgebra::Vector3;
@@ -44,7 +44,11 @@ struct With<P, const LEVEL: usize>(P);
 impl<S: Effect, P: Plan<S>, const LEVEL: usize> Plan<S> for With<P, LEVEL> {
     type Kept = P::Kept;
 
-    const VECTORS: Vectors = [Vectors::AsCompiled, Vectors::Four, Vectors::Eight][LEVEL];
+    const FACTS: PlanFacts = PlanFacts {
+        vectors: [Vectors::AsCompiled, Vectors::Four, Vectors::Eight][LEVEL],
+        runs: Runs::Merged,
+        ..P::FACTS
+    };
 
     delegate_plan!(0, |kept| *kept; step_size keep cost);
 

@@ -68,7 +68,7 @@ fn apart<G: LieGroup<Scalar = f64>, A: Advected<G>>(a: &At<G, A>, b: &At<G, A>) 
 fn assert_varies<S, P>(name: &str, make: impl Fn(f64) -> Stepper<S, P>, start: liestep::StateOf<S, P>)
 where
     S: Effect<Scalar = f64>,
-    P: Plan<S> + Variable + Clone,
+    P: Variable<S> + Clone,
 {
     let (h, stepper) = (0.01, make(0.01));
     let (mut one, mut other) = (start, start);
@@ -212,7 +212,7 @@ fn a_clock_has_an_end() {
 
 /// The errors of the momentum in space after steps of very different lengths, with plain and with compensated sums.
 fn momenta(steps: u64) -> [f64; 2] {
-    fn kept<S: Effect<Scalar = f64, Group = SO3> + LeftInvariant, P: Plan<S> + Variable>(
+    fn kept<S: Effect<Scalar = f64, Group = SO3> + LeftInvariant, P: Variable<S>>(
         (stepper, steps): (Stepper<S, P>, u64),
     ) -> f64 {
         let timed = stepper.with_clock(Clock::orbit(0.9, 10.0, 100).unwrap());

@@ -4,6 +4,7 @@
 
 mod couplings;
 mod energy;
+mod friction;
 mod joints;
 mod limit;
 mod structure;

@@ -179,6 +179,27 @@ TABLES = {
 }
 
 
+def test_a_rail_with_friction_and_a_rotor():
+    m, rotor, pull = 2, 0.5, 2 * 9.81 * 0.6
+    rail = {"name": "rail", "kind": "slider", "bodies": ["space", "cart"], "at": np.zeros((2, 3)), "axes": [[1, 0, 0], [1, 0, 0]]}
+
+    def end(**terms):
+        state = ls.scene({
+            "title": "incline", "gravity": {"g": 9.81, "up": [-0.6, 0, 0.8]},
+            "body": [{"name": "cart", "m": m, "moments": [1, 1, 1]}],
+            "joint": [{**rail, "armature": rotor, **terms}], "run": {"step": 0.01, "duration": 1},
+        }).start()
+        state.step(400)
+        return state.joints["rail"][1]
+
+    friction = {"force": 0.5 * pull, "below": 1e-4}
+    assert end(friction=friction, speed=1) == pytest.approx(1 + 4 * 0.5 * pull / (m + rotor), abs=1e-5)
+    # It creeps where f v/√(v² + u²) is the pull.
+    assert end(friction={"force": f"{2 * pull} N", "below": "0.02 m/s"}) == pytest.approx(0.02 / np.sqrt(3), abs=1e-9)
+    with pytest.raises(ls.Error, match="a `force`, N"):
+        end(friction={"torque": 1, "below": 1})
+
+
 def test_tables_are_the_scene_of_the_file():
     scene, file = ls.scene(TABLES), cart(0.01)
     assert scene.title == 'A "cart" \\u{7f} with a pole\\n'

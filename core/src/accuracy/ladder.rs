@@ -87,14 +87,10 @@ impl<'a> Ladder<'a> {
         run
     }
 
-    fn apart(&self, end: &EndNumbers, exact: &EndNumbers) -> f64 {
-        end.error(exact, &self.start.velocity, self.start.horizon)
-    }
-
     /// Distance of a run's end from that of a run whose start differs by some roundings.
     pub(super) fn rounding(&self, run: &Run, trials: &mut Trials) -> f64 {
         let nearby = self.made(&self.start.nearby(), run.steps, trials).0;
-        nearby.end.as_ref().zip(run.end.as_ref()).map_or(f64::INFINITY, |(nearby, end)| self.apart(nearby, end))
+        nearby.end.as_ref().zip(run.end.as_ref()).map_or(f64::INFINITY, |(nearby, end)| self.start.apart(nearby, end))
     }
 
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number, far below the largest
@@ -104,7 +100,7 @@ impl<'a> Ladder<'a> {
             let mut state = stepper.start(&start.attitude, &start.velocity)?;
             let iterations = stepper.attempt(&mut state, steps as u64).map_err(AccuracyError::Step)?;
             let cost = stepper.cost().unwrap_or(UNKNOWN).of_run(steps as u64, iterations);
-            let end = EndNumbers { attitude: state.attitude().into(), velocity: stepper.velocity(&state) };
+            let end = start.end(state.attitude(), &stepper.velocity(&state));
             let a_step = (cost - self.cost.once) / steps;
             Ok(Run { steps, a_step, cost, end: Some(end).filter(EndNumbers::is_finite).map(Rc::new) })
         };
@@ -119,7 +115,7 @@ impl<'a> Ladder<'a> {
 
     /// The error of a run against a reference, or that of the reference if it is larger.
     pub(super) fn error(&self, run: &Run, (exact, left): &Reference) -> Option<f64> {
-        run.end.as_ref().map(|end| self.apart(end, exact).max(*left).max(f64::EPSILON))
+        run.end.as_ref().map(|end| self.start.apart(end, exact).max(*left).max(f64::EPSILON))
     }
 
     /// The errors against a reference, from the first that is small enough for a power law on; without a reference, the

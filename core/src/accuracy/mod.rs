@@ -122,7 +122,9 @@ const LEAST: f64 = 1e-17;
 
 /// The cheapest of these steppers for an accuracy, as by [`Stepper::for_accuracy`], for states that are numbers.
 ///
-/// `beside` is the attitude displaced by [`displacement`], by which the growth of rounding errors is measured.
+/// `beside` is the attitude displaced by [`displacement`], by which the growth of rounding errors is measured. `units` are those in
+/// which the numbers of attitude and velocity count in an error, as a length of the system for its places, m, and speeds, m/s; empty
+/// ones are one.
 ///
 /// # Errors
 ///
@@ -132,8 +134,9 @@ pub fn choose(
     accuracy: Accuracy,
     [attitude, beside]: [&[f64]; 2],
     velocity: &[f64],
+    units: [&[f64]; 2],
 ) -> Result<(AnyStepper, Choice), AccuracyError> {
-    let start = Start::of_numbers([attitude, beside], velocity, accuracy.horizon);
+    let start = Start::of_numbers([attitude, beside], velocity, units, accuracy.horizon);
     let choice = checked(candidates, accuracy, &start)?;
     let stepper = (candidates[choice.chosen].make)(choice.chosen().step)?;
     Ok((stepper, choice))

@@ -51,6 +51,8 @@ pub(super) struct Start {
     pub(super) attitude: Vec<f64>,
     pub(super) velocity: Vec<f64>,
     pub(super) horizon: f64,
+    /// The units of the numbers of attitude and velocity; empty where all are one.
+    units: [Vec<f64>; 2],
     /// A displacement by some roundings, in all directions, and the attitude displaced by it.
     aside: Vec<f64>,
     beside: Vec<f64>,
@@ -68,9 +70,14 @@ pub(super) fn displacement(components: usize) -> Vec<f64> {
 }
 
 impl Start {
-    pub(super) fn of_numbers([attitude, beside]: [&[f64]; 2], velocity: &[f64], horizon: f64) -> Self {
-        let aside = displacement(velocity.len());
-        Self { attitude: attitude.into(), velocity: velocity.into(), horizon, aside, beside: beside.into() }
+    pub(super) fn of_numbers(
+        [attitude, beside]: [&[f64]; 2],
+        velocity: &[f64],
+        units: [&[f64]; 2],
+        horizon: f64,
+    ) -> Self {
+        let (aside, units) = (displacement(velocity.len()), units.map(Vec::from));
+        Self { attitude: attitude.into(), velocity: velocity.into(), horizon, units, aside, beside: beside.into() }
     }
 
     pub(super) fn new<G: LieGroup<Scalar = f64>>(attitude: &G, velocity: &G::Vector, horizon: f64) -> Self {
@@ -78,7 +85,8 @@ impl Start {
         let aside = axes.fold(G::Vector::zero(), |sum, axis| sum * -0.8 + axis) * ROUNDINGS;
         let beside = attitude.compose(&G::from_increment(&G::hat(&aside)));
         let [attitude, beside] = [attitude, &beside].map(|attitude| numbers(&attitude.matrix()));
-        Self { attitude, velocity: numbers(velocity), horizon, aside: numbers(&aside), beside }
+        let units = [Vec::new(), Vec::new()];
+        Self { attitude, velocity: numbers(velocity), horizon, units, aside: numbers(&aside), beside }
     }
 
     /// This start with another horizon.
@@ -88,10 +96,30 @@ impl Start {
 
     /// A start that differs by some roundings, in all directions.
     pub(super) fn nearby(&self) -> Self {
-        let scale = size(&self.velocity).max(self.horizon.recip());
-        let velocity = self.velocity.iter().zip(&self.aside).map(|(velocity, aside)| velocity + aside * scale);
-        Self { attitude: self.beside.clone(), velocity: velocity.collect(), ..self.clone() }
+        let scale = size(&counted(&self.velocity, &self.units[1])).max(self.horizon.recip());
+        let mut velocity = self.velocity.clone();
+        for (number, (part, aside)) in velocity.iter_mut().zip(&self.aside).enumerate() {
+            *part += aside * scale * self.units[1].get(number).unwrap_or(&1.0);
+        }
+        Self { attitude: self.beside.clone(), velocity, ..self.clone() }
     }
+
+    /// The end of a run with this attitude and velocity, in the units of this start.
+    pub(super) fn end(&self, attitude: &[f64], velocity: &[f64]) -> EndNumbers {
+        let [of_attitude, of_velocity] = &self.units;
+        EndNumbers { attitude: counted(attitude, of_attitude), velocity: counted(velocity, of_velocity) }
+    }
+
+    /// The difference of two ends.
+    pub(super) fn apart(&self, end: &EndNumbers, exact: &EndNumbers) -> f64 {
+        end.error(exact, &counted(&self.velocity, &self.units[1]), self.horizon)
+    }
+}
+
+/// Numbers in these units.
+fn counted(numbers: &[f64], units: &[f64]) -> Vec<f64> {
+    let unit = |at: usize| units.get(at).unwrap_or(&1.0);
+    numbers.iter().enumerate().map(|(at, number)| number / unit(at)).collect()
 }
 
 /// The end of a run in numbers.

@@ -5,10 +5,12 @@
 //! |---|---|---|
 //! | [`JointSpring`] | [`SliderSpring`] | energies `½ k θ²`, `½ k (s − l)² − f (s − l)` |
 //! | [`JointDamping`] | [`SliderDamping`] | viscous friction, `−c ω` and `−c v` |
-//! | [`DryFriction`] | | `−τ ω/√(|ω|² + v²)` |
+//! | [`DryFriction`] | [`SliderFriction`] | dry friction, `−τ ω/√(|ω|² + v²)` and `−f v/√(v² + u²)` |
 //! | [`JointTorque`] | | a motor's constant torque |
+//! | [`Armature`] | [`SliderArmature`] | inertia of a motor's rotor, energies `½ a ω²` and `½ a v²` |
 //!
-//! Friction couples the steps of its bodies, so that no coefficient is too large for a step; springs and motors are kicks.
+//! Friction and rotors couple the steps of their bodies, so that no coefficient is too large for a step; springs and motors are
+//! kicks.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -134,4 +136,66 @@ pub struct SliderDamping {
     pub c: f64,
     /// The unit vector of the axis, in the axes of the first body.
     pub axis: Vector3<f64>,
+}
+
+/// Dry friction in a slider, regularised: the force `−f v/√(v² + u²)` against the velocity `v` of [`SliderDamping`]. Faster than the
+/// speed `u` it is nearly `f`; slower than that it is viscous, so that a slider creeps where it would stick.
+#[force(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R_1 = F_1.seen_from(space), r = d_2.seen_from(d_1)),
+    displacement(eta_1, xi_1, eta_2, xi_2),
+    work = {
+        let y = R_1.transpose() * r;
+        let A = R_1 * F_1;
+        let z = A.transpose() * (r + d_2 - d_1);
+        let before = R_1.transpose() * (xi_2 - xi_1) - eta_1.cross(&y);
+        let after = A.transpose() * (xi_2_next - xi_1_next) - eta_1_next.cross(&z);
+        let shift = axis.dot(&(z - y));
+        -0.5 * force * shift / (shift * shift / (h * h) + speed * speed).sqrt() * axis.dot(&(before + after))
+    },
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SliderFriction {
+    /// The force `f` of sliding, N.
+    pub force: f64,
+    /// The speed `u` below which friction is viscous, m/s, above zero.
+    pub speed: f64,
+    /// The unit vector of the axis, in the axes of the first body.
+    pub axis: Vector3<f64>,
+}
+
+/// The inertia of a motor's rotor in a joint that turns, as the joint feels it behind its gear: the kinetic energy `½ a ω²` of the
+/// angular velocity `ω` of the second body relative to the first, by the turn in a step. It is added to the kinetic energies of
+/// both bodies.
+#[lagrangian(
+    group(F_1 = SO3, F_2 = SO3),
+    advected(Q = F_2.seen_from(F_1)),
+    l_d = a * log(Q.transpose() * F_1.transpose() * Q * F_2).norm_squared() / (2.0 * h),
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Armature {
+    /// Inertia `a`, kg m²: that of the rotor times the square of the gear's ratio.
+    pub a: f64,
+}
+
+/// The inertia of a motor's rotor in a slider, as the slider feels it: the kinetic energy `½ a v²` of the velocity `v` of the shift of
+/// [`SliderSpring`].
+#[lagrangian(
+    group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
+    advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
+    l_d = {
+        let before = (R_1 * axis).dot(&(r + R_2 * at_2));
+        let after = (R_1 * F_1 * axis).dot(&(r + d_2 - d_1 + R_2 * F_2 * at_2));
+        let shift = after - before;
+        a * shift * shift / (2.0 * h)
+    },
+)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SliderArmature {
+    /// Inertia `a`, kg.
+    pub a: f64,
+    /// The unit vector of the axis, in the axes of the first body.
+    pub axis: Vector3<f64>,
+    /// The point of the second body, in its axes, m.
+    pub at_2: Vector3<f64>,
 }

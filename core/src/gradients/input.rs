@@ -9,7 +9,7 @@ use crate::gradients::tangent::{SquareOfVector, Tangent, TangentOf, blocks_of};
 use crate::gradients::{Carry, Linearisable, Linearisation};
 use crate::groups::{Advected as _, LieGroup as _};
 use crate::mechanics::{Effect, Group, Scalar, SecondDerivatives, Term, Vector};
-use crate::motion::{Plan, StateOf, Steerable, StepReport, Stepper};
+use crate::motion::{StateOf, Steerable, StepReport, Stepper};
 use crate::numbers::{Coordinates, Entries, Real, dispatch, real};
 
 /// An input of a step besides the state, or the derivative of a scalar by it: that has the kind of the input, and each
@@ -87,7 +87,7 @@ impl<V> Transition<V> {
 }
 
 /// # Step: of any kind
-impl<S: Effect, P: Plan<S> + Steerable> Stepper<S, P> {
+impl<S: Effect, P: Steerable<S>> Stepper<S, P> {
     /// One step with this input: [`step`](Self::step), [`step_forced`](Self::step_forced) or
     /// [`step_with`](Self::step_with), according to its kind. On an error the state is unchanged.
     ///

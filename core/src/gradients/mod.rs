@@ -130,7 +130,7 @@ use recording::Recording;
     label = "not with this method",
     note = "known are those of a scene's own step, of compositions, and of splittings, processed ones too, whose flow is exact or declared with `gradients`; those of bodies in joints and of chains are differences of two motions"
 )]
-pub trait Linearisable<S: SecondDerivatives>: Plan<S> + Steerable {
+pub trait Linearisable<S: SecondDerivatives>: Steerable<S> {
     /// Constants of the stages, computed once for each [`Linearisation`]: the lengths of a splitting's stages, and the
     /// common parts of the derivatives of an exact motion.
     type Table: Clone + core::fmt::Debug;
@@ -348,7 +348,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for StepRecord<'_, S, P> {
     type Output = Result<StepReport, StepError>;
 
     /// The registers of a step without a record.
-    const VECTORS: Vectors = P::VECTORS;
+    const VECTORS: Vectors = P::FACTS.vectors;
     const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]
@@ -360,7 +360,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for StepRecord<'_, S, P> {
                 state.motion = recorded.motion;
                 Ok(report)
             }
-            Err(error) if P::EXPLAINS => Err(plan.explained(error, scene, &state.motion, &state.kept)),
+            Err(error) if P::FACTS.explains => Err(plan.explained(error, scene, &state.motion, &state.kept)),
             Err(error) => Err(error),
         }
     }

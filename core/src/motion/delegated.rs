@@ -8,11 +8,9 @@ macro_rules! delegate_plan {
     ($plan:tt, |$kept:ident| $inner:expr; $($name:ident)+) => {
         $($crate::delegate_plan!(@$name $plan, $kept, $inner);)+
     };
-    (@constants $($of:tt)*) => {
-        const VECTORS: $crate::numbers::Vectors = P::VECTORS;
-        const EXPLAINS: bool = P::EXPLAINS;
-        const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
-        const VARIES: bool = P::VARIES;
+    (@facts $($of:tt)*) => {
+        const FACTS: $crate::motion::PlanFacts =
+            $crate::motion::PlanFacts { runs: $crate::motion::Runs::Merged, counts_time: false, ..P::FACTS };
     };
     (@step_size $plan:tt, $($kept:tt)*) => {
         fn step_size(&self) -> $crate::mechanics::Scalar<S> {

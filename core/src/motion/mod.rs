@@ -50,7 +50,7 @@ pub(crate) use integrator::write_row;
 pub use integrator::{Answer, Integrator, Moment};
 pub use kept::Kept;
 pub use on_group::{GroupState, GroupStepper};
-pub use plan::{Cost, NextSteps, Plan, Steerable, Variable};
+pub use plan::{Cost, NextSteps, Plan, PlanFacts, Runs, Steerable, Variable};
 #[doc(hidden)]
 pub use propagator::forced;
 pub use propagator::{Layout, Propagator};

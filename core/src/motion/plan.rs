@@ -12,6 +12,65 @@ use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, rea
 use crate::solving::largest_fraction;
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, SimdRealField as _, SimdValue};
 
+/// The facts about the steps of a [`Plan`] that are known when they are compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools)] // independent facts
+pub struct PlanFacts {
+    /// The vector instructions of a step, if the machine has them. A declared step of a single body doesn't become
+    /// faster by them; several bodies in [lanes](crate::numbers::Real#lanes) or in an array do.
+    pub vectors: Vectors,
+    /// The relation of runs to steps.
+    pub runs: Runs,
+    /// Whether a step depends on the number of steps before it.
+    pub counts_time: bool,
+    /// Whether the steps have different lengths, in units of [`step_size`](Plan::step_size).
+    pub varies: bool,
+    /// Whether the plan defines the inertia instead of the scene: that of bodies whose coordinates couple their
+    /// velocities. The scene then consists of potentials alone.
+    pub has_own_inertia: bool,
+    /// Whether the errors of [`step`](Plan::step) are those of a stage, so that [`explained`](Plan::explained) must
+    /// convert them before they are returned.
+    pub explains: bool,
+}
+
+/// The relation of a [`run`](Plan::run) to steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Runs {
+    /// A run merges parts of neighbouring steps.
+    Merged,
+    /// A run is a sequence of single steps: after an error the state is that of the last successful one, and reports
+    /// contain only iterations.
+    BySteps,
+    /// A step is a run of one, to the bit and in its state after an error: only the run is compiled then.
+    AsSteps,
+}
+
+impl Runs {
+    pub(crate) const fn are_steps(self) -> bool {
+        matches!(self, Self::AsSteps)
+    }
+
+    pub(crate) const fn are_sequences(self) -> bool {
+        matches!(self, Self::BySteps)
+    }
+}
+
+impl PlanFacts {
+    /// The facts about steps of one length, unless a plan says otherwise.
+    #[must_use]
+    pub const fn of<S: Effect>() -> Self {
+        let is_wide = <Scalar<S> as SimdValue>::LANES > 1 || <Group<S> as LieGroup>::BODIES > 1;
+        Self {
+            vectors: if is_wide { Vectors::Four } else { Vectors::AsCompiled },
+            runs: Runs::Merged,
+            counts_time: false,
+            varies: false,
+            has_own_inertia: false,
+            explains: false,
+        }
+    }
+}
+
 /// A method with its constants folded for a scene and a step: the part of a [`Stepper`](crate::Stepper) that makes its
 /// steps.
 ///
@@ -28,13 +87,8 @@ pub trait Plan<S: Effect>: Sized {
     /// The memory of one step for the next: guesses, stages. `()` if there is none.
     type Kept: Kept<Scalar<S>>;
 
-    /// The vector instructions of a step, if the machine has them. A declared step of a single body doesn't become
-    /// faster by them; several bodies in [lanes](crate::numbers::Real#lanes) or in an array do.
-    const VECTORS: Vectors = if <Scalar<S> as SimdValue>::LANES > 1 || <Group<S> as LieGroup>::BODIES > 1 {
-        Vectors::Four
-    } else {
-        Vectors::AsCompiled
-    };
+    /// The facts about its steps that are known when they are compiled.
+    const FACTS: PlanFacts = PlanFacts::of::<S>();
 
     /// The step `h`, s.
     fn step_size(&self) -> Scalar<S>;
@@ -54,21 +108,10 @@ pub trait Plan<S: Effect>: Sized {
     /// The memory at the beginning of a motion.
     fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept;
 
-    /// Whether a step depends on the number of steps before it.
-    const COUNTS_TIME: bool = false;
-
-    /// Whether the steps have different lengths, in units of [`step_size`](Self::step_size).
-    const VARIES: bool = false;
-
-    /// The time after this many steps, `n h`, s, if it depends on nothing else.
+    /// The time of a motion since its start, s; `n h` after `n` steps of one length.
     #[allow(clippy::cast_precision_loss)] // 2⁵³ steps take longer than a career
-    fn counted(&self, steps: u64) -> Scalar<S> {
-        self.step_size() * real(steps as f64)
-    }
-
-    /// The time of a motion since its start, s.
     fn time(&self, motion: &MotionOf<S>, _kept: &Self::Kept) -> Scalar<S> {
-        self.counted(motion.steps)
+        self.step_size() * real(motion.steps as f64)
     }
 
     /// The length of the next step of a motion, or of the previous one, s; not finite if there is none. A step back is
@@ -77,15 +120,10 @@ pub trait Plan<S: Effect>: Sized {
         self.step_size()
     }
 
-    /// The advected parameters in space after this many steps; the scene's own, unless values are prescribed for each
-    /// step.
-    fn advected(&self, scene: &S, _steps: u64) -> S::Advected {
+    /// The advected parameters in space at the start; the scene's own, unless values are prescribed for each step.
+    fn advected(&self, scene: &S) -> S::Advected {
         scene.advected()
     }
-
-    /// Whether the plan defines the inertia instead of the scene: that of bodies whose coordinates couple their
-    /// velocities. The scene then consists of potentials alone.
-    const HAS_OWN_INERTIA: bool = false;
 
     /// The momentum at a body velocity.
     fn momentum(&self, scene: &S, _attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
@@ -107,8 +145,8 @@ pub trait Plan<S: Effect>: Sized {
         true
     }
 
-    /// Makes one step. A plan implements this, or it implements [`run`](Self::run) and sets
-    /// [`STEPS_BY_RUNS`](Self::STEPS_BY_RUNS); then a step is a run of one.
+    /// Makes one step. A plan implements this, or it implements [`run`](Self::run) with
+    /// [`Runs::AsSteps`]; then a step is a run of one.
     ///
     /// Mark your own `#[inline(always)]`: a function that isn't inlined doesn't stay in registers and isn't compiled
     /// for the machine's vector instructions. The library's own aren't inlined in builds with debug assertions, to
@@ -125,77 +163,8 @@ pub trait Plan<S: Effect>: Sized {
         motion: &mut M,
         kept: &mut Self::Kept,
     ) -> Result<StepReport, StepError> {
-        const { assert!(Self::STEPS_BY_RUNS, "a plan has neither: write `step`, or `run` with `STEPS_BY_RUNS = true`") }
+        const { assert!(Self::FACTS.runs.are_steps(), "a plan has neither: write `step`, or `run` with `Runs::AsSteps`") }
         self.run(scene, motion, kept, 1).map(StepReport::of_run)
-    }
-
-    /// Makes one step with prescribed values. `values` returns the advected parameters in space in the middle of a part of the
-    /// step, which is given by its begin and its length as shares of the step; by default of the whole step. A plan with
-    /// stages of their own times asks for those of each.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`step`](Self::step) and of `values`.
-    #[hot]
-    fn step_seeing(
-        &self,
-        scene: &S,
-        motion: &mut MotionOf<S>,
-        kept: &mut Self::Kept,
-        values: &mut impl FnMut([Scalar<S>; 2]) -> Result<S::Advected, StepError>,
-    ) -> Result<StepReport, StepError> {
-        let seen = values([real(0.0), real(1.0)])?.seen_from(&motion.attitude);
-        self.see(motion, kept, seen);
-        self.step(scene, motion, kept)
-    }
-
-    /// The [`part`](Self::part) of such a step; by default all parts of a step have the values in its middle. The shares are
-    /// those of the step in the direction of the part.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`part`](Self::part) and of `values`.
-    fn part_seeing(
-        &self,
-        scene: &S,
-        motion: &MotionOf<S>,
-        kept: &Self::Kept,
-        fraction: Scalar<S>,
-        values: &mut impl FnMut([Scalar<S>; 2]) -> Result<S::Advected, StepError>,
-    ) -> Result<MotionOf<S>, StepError> {
-        let (mut now, mut kept) = (*motion, *kept);
-        let seen = values([real(0.0), real(1.0)])?.seen_from(&now.attitude);
-        self.see(&mut now, &mut kept, seen);
-        self.part(scene, &now, &kept, fraction)
-    }
-
-    /// Makes one step of another length, s, without counting it.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`step`](Self::step), and [`StepError::NonFinite`] if the constants of such a step aren't finite.
-    fn step_of<M: Summation<Group<S>, S::Advected>>(
-        &self,
-        scene: &S,
-        motion: &mut M,
-        kept: &mut Self::Kept,
-        length: Scalar<S>,
-    ) -> Result<StepReport, StepError> {
-        if length.simd_eq(real(0.0)).all() {
-            return Ok(StepReport::of(0));
-        }
-        let part = self.refolded(scene, length);
-        let part = part.map_err(|_| StepError::NonFinite { what: "constants of a step of this length" })?;
-        let (ratio, back) = (length / self.step_size(), self.step_size() / length);
-        let has_ratio = is_finite(ratio) && is_finite(back);
-        let (mut next, steps) = (*motion, motion.now().steps);
-        let mut guess = if has_ratio { kept.scaled(ratio) } else { part.keep(scene, next.now()) };
-        let made = part.step(scene, &mut next, &mut guess);
-        let report = made.map_err(|error| part.explained(error, scene, motion.now(), &guess))?;
-        next.recount(steps);
-        *kept = if has_ratio { guess.scaled(back) } else { self.keep(scene, next.now()) };
-        *motion = next;
-        Ok(report)
     }
 
     /// The motion a fraction of the step after this one; a negative fraction is a step back.
@@ -240,21 +209,13 @@ pub trait Plan<S: Effect>: Sized {
         kept: &mut Self::Kept,
         steps: u64,
     ) -> Result<u64, StepError> {
-        const { assert!(!Self::STEPS_BY_RUNS, "with `STEPS_BY_RUNS` a step is a run of one: write `run`") }
+        const { assert!(!Self::FACTS.runs.are_steps(), "with `Runs::AsSteps` a step is a run of one: write `run`") }
         let mut iterations = 0;
         for _ in 0..steps {
             iterations += u64::from(self.step(scene, motion, kept)?.iterations);
         }
         Ok(iterations)
     }
-
-    /// Whether a step is a [`run`](Self::run) of one, to the bit and in its state after an error: only the run is
-    /// compiled then.
-    const STEPS_BY_RUNS: bool = false;
-
-    /// Whether a [`run`](Self::run) is a sequence of single steps: after an error the state is that of the last
-    /// successful one, and reports contain only iterations.
-    const RUNS_BY_STEPS: bool = false;
 
     /// Adds an impulse to the momentum between two steps, and to its copies in the memory.
     #[hot]
@@ -267,16 +228,6 @@ pub trait Plan<S: Effect>: Sized {
     ) {
         motion.push(impulse);
     }
-
-    /// Replaces the body's advected parameters, and clears the part of the memory that depends on the old ones.
-    #[hot]
-    fn see(&self, motion: &mut MotionOf<S>, _kept: &mut Self::Kept, advected: S::Advected) {
-        motion.advected = advected;
-    }
-
-    /// Whether the errors of [`step`](Self::step) are those of a stage, so that [`explained`](Self::explained) must
-    /// convert them before they are returned.
-    const EXPLAINS: bool = false;
 
     /// The error of the whole step for that of a stage: it names the largest solvable step.
     #[cold]
@@ -319,7 +270,7 @@ struct Run<'a, 'n, S: Effect, P: Plan<S>>(
 
 impl<S: Effect, P: Plan<S>> Kernel for Run<'_, '_, S, P> {
     type Output = Result<u64, StepError>;
-    const VECTORS: Vectors = P::VECTORS;
+    const VECTORS: Vectors = P::FACTS.vectors;
     const IS_IN_LANES: bool = <Scalar<S> as SimdValue>::LANES > 1;
 
     /// The function that continues the run is called inside of this one, so that constants stay in registers.
@@ -357,7 +308,53 @@ pub(crate) fn run_plan<S: Effect, P: Plan<S>>(
     label = "not with this method",
     note = "the stages of Gauss collocation see what is advected from the scene; give values to another method's steps"
 )]
-pub trait Steerable {}
+pub trait Steerable<S: Effect>: Plan<S> {
+    /// Replaces the body's advected parameters, and clears the part of the memory that depends on the old ones.
+    #[hot]
+    fn see(&self, motion: &mut MotionOf<S>, _kept: &mut Self::Kept, advected: S::Advected) {
+        motion.advected = advected;
+    }
+
+    /// Makes one step with prescribed values. `values` returns the advected parameters in space in the middle of a part of the
+    /// step, which is given by its begin and its length as shares of the step; by default of the whole step. A plan with
+    /// stages of their own times asks for those of each.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`](Plan::step) and of `values`.
+    #[hot]
+    fn step_seeing(
+        &self,
+        scene: &S,
+        motion: &mut MotionOf<S>,
+        kept: &mut Self::Kept,
+        values: &mut impl FnMut([Scalar<S>; 2]) -> Result<S::Advected, StepError>,
+    ) -> Result<StepReport, StepError> {
+        let seen = values([real(0.0), real(1.0)])?.seen_from(&motion.attitude);
+        self.see(motion, kept, seen);
+        self.step(scene, motion, kept)
+    }
+
+    /// The [`part`](Plan::part) of such a step; by default all parts of a step have the values in its middle. The shares are
+    /// those of the step in the direction of the part.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`part`](Plan::part) and of `values`.
+    fn part_seeing(
+        &self,
+        scene: &S,
+        motion: &MotionOf<S>,
+        kept: &Self::Kept,
+        fraction: Scalar<S>,
+        values: &mut impl FnMut([Scalar<S>; 2]) -> Result<S::Advected, StepError>,
+    ) -> Result<MotionOf<S>, StepError> {
+        let (mut now, mut kept) = (*motion, *kept);
+        let seen = values([real(0.0), real(1.0)])?.seen_from(&now.attitude);
+        self.see(&mut now, &mut kept, seen);
+        self.part(scene, &now, &kept, fraction)
+    }
+}
 
 /// A plan whose successive steps may have different lengths, each with its own constants.
 ///
@@ -369,7 +366,36 @@ pub trait Steerable {}
     note = "a processor belongs to one length: take the splitting without it",
     note = "values are to be given afterwards: `.with_clock(…).driven(…)`"
 )]
-pub trait Variable {}
+pub trait Variable<S: Effect>: Plan<S> {
+    /// Makes one step of another length, s, without counting it.
+    ///
+    /// # Errors
+    ///
+    /// The errors of [`step`](Plan::step), and [`StepError::NonFinite`] if the constants of such a step aren't finite.
+    fn step_of<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        length: Scalar<S>,
+    ) -> Result<StepReport, StepError> {
+        if length.simd_eq(real(0.0)).all() {
+            return Ok(StepReport::of(0));
+        }
+        let part = self.refolded(scene, length);
+        let part = part.map_err(|_| StepError::NonFinite { what: "constants of a step of this length" })?;
+        let (ratio, back) = (length / self.step_size(), self.step_size() / length);
+        let has_ratio = is_finite(ratio) && is_finite(back);
+        let (mut next, steps) = (*motion, motion.now().steps);
+        let mut guess = if has_ratio { kept.scaled(ratio) } else { part.keep(scene, next.now()) };
+        let made = part.step(scene, &mut next, &mut guess);
+        let report = made.map_err(|error| part.explained(error, scene, motion.now(), &guess))?;
+        next.recount(steps);
+        *kept = if has_ratio { guess.scaled(back) } else { self.keep(scene, next.now()) };
+        *motion = next;
+        Ok(report)
+    }
+}
 
 /// The approximate number of operations of a step, by which methods are ranked; it is the same on every machine.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -160,13 +160,15 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
     #[must_use]
     pub fn with_clock(self, clock: Clock) -> Stepper<S, VariedSteps<P, Clock>>
     where
-        P: Variable,
+        P: Variable<S>,
     {
         self.varied(clock)
     }
 }
 
-impl<P: Steerable> Steerable for VariedSteps<P, Clock> {}
+impl<S: Effect<Scalar = f64>, P: Steerable<S> + Variable<S>> Steerable<S> for VariedSteps<P, Clock> {
+    delegate_plan!(plan, |kept| kept.0; see);
+}
 
 impl<S: Effect<Scalar = f64>> Lengths<S> for Clock {
     type Memory = ();

@@ -73,8 +73,14 @@ impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for Splitting<S, K> {}
 impl<S: Effect, K: KineticFlow<Scalar<S>>> Compensable for ProcessedSplitting<S, K> {}
 impl<P: Compensable> Compensable for Substeps<P> {}
 
-impl<P: Steerable> Steerable for CompensatedSums<P> {}
-impl<P: Variable> Variable for CompensatedSums<P> {}
+impl<S: Effect, P: Steerable<S>> Steerable<S> for CompensatedSums<P> {
+    fn see(&self, motion: &mut MotionOf<S>, kept: &mut Self::Kept, advected: S::Advected) {
+        self.0.see(motion, &mut kept.0, advected);
+        kept.1.advected = zero();
+    }
+}
+
+impl<S: Effect, P: Variable<S>> Variable<S> for CompensatedSums<P> {}
 
 /// # Wrap: compensated sums
 impl<S: Effect, P: Plan<S>> Stepper<S, P> {
@@ -94,7 +100,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
     type Kept = (P::Kept, Carry<Group<S>, S::Advected>);
 
-    delegate_plan!(0, |kept| kept.0; constants step_size momentum velocity is_in_step explained max_step cost);
+    delegate_plan!(0, |kept| kept.0; facts step_size momentum velocity is_in_step explained max_step cost);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         self.0.refolded(scene, h).map(Self)
@@ -139,11 +145,6 @@ impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
         self.0.push(scene, &mut sums, &mut kept.0, impulse);
         motion.replace(sums.motion);
         kept.1 = sums.carry;
-    }
-
-    fn see(&self, motion: &mut MotionOf<S>, kept: &mut Self::Kept, advected: S::Advected) {
-        self.0.see(motion, &mut kept.0, advected);
-        kept.1.advected = zero();
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {

@@ -35,7 +35,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>> Stepper<S, P> {
     #[must_use]
     pub fn with_density<D>(self, rate: D) -> Stepper<S, VariedSteps<P, Density<D>>>
     where
-        P: Variable,
+        P: Variable<S>,
         D: Fn(&MotionOf<S>, &Vector<S>) -> f64 + Clone,
     {
         self.varied(Density(rate))

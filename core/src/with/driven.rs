@@ -3,7 +3,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Scalar, SceneVisitor};
-use crate::motion::{MotionOf, Plan, Steerable, StepReport, Stepper, SumsOf};
+use crate::motion::{MotionOf, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, SumsOf};
 use crate::numbers::real;
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
@@ -16,7 +16,7 @@ pub struct Driven<P, V> {
 }
 
 /// # Wrap: prescribed values
-impl<S: Effect, P: Plan<S> + Steerable> Stepper<S, P> {
+impl<S: Effect, P: Steerable<S>> Stepper<S, P> {
     /// A stepper whose steps have prescribed parameters, each [with](Self::step_with) those in its middle. The function
     /// `values` of the time since the start, s, returns the advected parameters in space, as `scene.advected()` does.
     ///
@@ -63,27 +63,26 @@ impl<S: Effect, P: Plan<S> + Steerable> Stepper<S, P> {
     }
 }
 
-impl<S: Effect, P: Plan<S>, V> Plan<S> for Driven<P, V>
+impl<S: Effect, P: Steerable<S>, V> Plan<S> for Driven<P, V>
 where
     V: Fn(Scalar<S>) -> S::Advected + Clone,
 {
     type Kept = P::Kept;
 
-    delegate_plan!(plan, |kept| *kept; constants step_size keep momentum velocity is_in_step cost push);
+    delegate_plan!(plan, |kept| *kept; step_size keep momentum velocity is_in_step cost push);
 
-    const RUNS_BY_STEPS: bool = true;
-    const COUNTS_TIME: bool = true;
+    const FACTS: PlanFacts = PlanFacts { runs: Runs::BySteps, counts_time: true, ..P::FACTS };
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, values: self.values.clone() })
     }
 
-    fn advected(&self, _: &S, steps: u64) -> S::Advected {
-        (self.values)(self.plan.counted(steps))
+    fn advected(&self, _: &S) -> S::Advected {
+        (self.values)(real(0.0))
     }
 
-    fn counted(&self, steps: u64) -> Scalar<S> {
-        self.plan.counted(steps)
+    fn time(&self, motion: &MotionOf<S>, kept: &P::Kept) -> Scalar<S> {
+        self.plan.time(motion, kept)
     }
 
     fn length(&self, scene: &S, motion: &MotionOf<S>, kept: &P::Kept, is_ahead: bool) -> Scalar<S> {

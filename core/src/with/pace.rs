@@ -5,8 +5,10 @@ use super::density::DensityMemory;
 use crate::error::{SetupError, StepError};
 use crate::groups::Retraction as _;
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector, energy};
-use crate::motion::{ElapsedTime, Guess, Motion, MotionOf, OwnStep, Plan, StepReport, Stepper, SumsOf};
-use crate::numbers::{History as _, Polynomial, Vectors};
+use crate::motion::{
+    ElapsedTime, Guess, Motion, MotionOf, OwnStep, Plan, PlanFacts, Runs, StepReport, Stepper, SumsOf,
+};
+use crate::numbers::{History as _, Polynomial};
 
 /// A plan whose steps are equal in `τ`, `dt = s dτ`, by [`Stepper::paced`].
 #[derive(Clone, Debug)]
@@ -75,11 +77,8 @@ impl<S: Effect<Scalar = f64>, P: Pacable<S>> Plan<S> for PacedStep<P> {
     /// increment so well that one iteration converges to rounding.
     type Kept = (P::Kept, (DensityMemory, Polynomial<Vector<S>>));
 
-    const VECTORS: Vectors = P::VECTORS;
-    const EXPLAINS: bool = P::EXPLAINS;
-    const HAS_OWN_INERTIA: bool = true;
-    const RUNS_BY_STEPS: bool = true;
-    const VARIES: bool = true;
+    const FACTS: PlanFacts =
+        PlanFacts { has_own_inertia: true, runs: Runs::BySteps, varies: true, counts_time: false, ..P::FACTS };
 
     delegate_plan!(0, |kept| kept.0; step_size is_in_step explained cost);
 

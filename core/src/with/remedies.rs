@@ -47,8 +47,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     pub fn or_substeps(self, at_most: u32) -> Stepper<S, Substeps<P>> {
         // The parts of a step have a count of their own.
         const {
-            assert!(!P::COUNTS_TIME, "ask for substeps before the values: `.or_substeps(…).driven(…)`");
-            assert!(!P::VARIES, "ask for substeps before the lengths: `.or_substeps(…).with_clock(…)`");
+            assert!(!P::FACTS.counts_time, "ask for substeps before the values: `.or_substeps(…).driven(…)`");
+            assert!(!P::FACTS.varies, "ask for substeps before the lengths: `.or_substeps(…).with_clock(…)`");
         }
         Stepper { scene: self.scene, plan: Substeps { plan: self.plan, at_most } }
     }
@@ -58,7 +58,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
     type Kept = P::Kept;
 
     // The largest step is that of the plan itself, which excludes steps that are solved only in parts.
-    delegate_plan!(plan, |kept| *kept; constants step_size keep momentum velocity is_in_step explained max_step cost push see);
+    delegate_plan!(plan, |kept| *kept; facts step_size keep momentum velocity is_in_step explained max_step cost push);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, at_most: self.at_most })
@@ -79,8 +79,10 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
     }
 }
 
-impl<P: Steerable> Steerable for Substeps<P> {}
-impl<P: Variable> Variable for Substeps<P> {}
+impl<S: Effect, P: Steerable<S>> Steerable<S> for Substeps<P> {
+    delegate_plan!(plan, |kept| *kept; see);
+}
+impl<S: Effect, P: Variable<S>> Variable<S> for Substeps<P> {}
 
 /// Makes the step in equal parts, or leaves the motion unchanged and returns the error.
 #[cold]

@@ -2,8 +2,7 @@
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, SceneVisitor, Vector};
-use crate::motion::{Kept, MotionOf, Plan, StepReport, Stepper, SumsOf, Variable};
-use crate::numbers::Vectors;
+use crate::motion::{Kept, MotionOf, Plan, PlanFacts, Runs, StepReport, Stepper, SumsOf, Variable};
 
 /// A rule for the length of each step.
 pub trait Lengths<S: Effect>: Clone {
@@ -43,13 +42,13 @@ pub trait Lengths<S: Effect>: Clone {
 /// A plan whose steps have varying lengths, by [`Stepper::with_clock`] and [`Stepper::with_density`].
 #[derive(Clone, Debug)]
 pub struct VariedSteps<P, L> {
-    plan: P,
+    pub(super) plan: P,
     lengths: L,
 }
 
-impl<S: Effect<Scalar = f64>, P: Plan<S> + Variable> Stepper<S, P> {
+impl<S: Effect<Scalar = f64>, P: Variable<S>> Stepper<S, P> {
     pub(super) fn varied<L: Lengths<S>>(self, lengths: L) -> Stepper<S, VariedSteps<P, L>> {
-        const { assert!(!P::VARIES, "a step has one length: choose a clock or a density") }
+        const { assert!(!P::FACTS.varies, "a step has one length: choose a clock or a density") }
         Stepper { scene: self.scene, plan: VariedSteps { plan: self.plan, lengths } }
     }
 }
@@ -65,7 +64,7 @@ impl<P, L> VariedSteps<P, L> {
     ) -> Result<f64, StepError>
     where
         S: Effect<Scalar = f64>,
-        P: Plan<S>,
+        P: Variable<S>,
         L: Lengths<S>,
     {
         let (length, unit) = (self.length(scene, motion, kept, is_ahead), self.plan.step_size());
@@ -75,17 +74,13 @@ impl<P, L> VariedSteps<P, L> {
     }
 }
 
-impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for VariedSteps<P, L> {
+impl<S: Effect<Scalar = f64>, P: Variable<S>, L: Lengths<S>> Plan<S> for VariedSteps<P, L> {
     type Kept = (P::Kept, L::Memory);
 
-    const VECTORS: Vectors = P::VECTORS;
-    const HAS_OWN_INERTIA: bool = P::HAS_OWN_INERTIA;
-    const RUNS_BY_STEPS: bool = true;
-    const COUNTS_TIME: bool = L::COUNTED;
-    const VARIES: bool = true;
+    const FACTS: PlanFacts =
+        PlanFacts { runs: Runs::BySteps, counts_time: L::COUNTED, varies: true, explains: false, ..P::FACTS };
 
-    // A step of another length isn't one of the counted steps.
-    delegate_plan!(plan, |kept| kept.0; step_size momentum velocity is_in_step cost push see step_of);
+    delegate_plan!(plan, |kept| kept.0; step_size momentum velocity is_in_step cost push);
 
     fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, lengths: self.lengths.clone() })
@@ -93,10 +88,6 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for VariedSteps
 
     fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
         (self.plan.keep(scene, motion), self.lengths.begin())
-    }
-
-    fn counted(&self, steps: u64) -> f64 {
-        self.lengths.time(steps, self.plan.step_size(), &self.lengths.begin())
     }
 
     fn time(&self, motion: &MotionOf<S>, kept: &Self::Kept) -> f64 {
@@ -145,4 +136,7 @@ impl<S: Effect<Scalar = f64>, P: Plan<S>, L: Lengths<S>> Plan<S> for VariedSteps
     }
 }
 
-impl<P: Variable, L> Variable for VariedSteps<P, L> {}
+/// A step of another length isn't one of the counted steps.
+impl<S: Effect<Scalar = f64>, P: Variable<S>, L: Lengths<S>> Variable<S> for VariedSteps<P, L> {
+    delegate_plan!(plan, |kept| kept.0; step_of);
+}

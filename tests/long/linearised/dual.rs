@@ -34,7 +34,7 @@ fn by_dual_numbers<M, P, A: Entries<f64>, const N: usize, const D: usize>(
 where
     M: Effect<Scalar = Dual64>,
     M::Group: LieGroup<Scalar = Dual64, Matrix = SMatrix<Dual64, N, N>, Vector = SVector<Dual64, D>>,
-    P: Plan<M> + Steerable,
+    P: Steerable<M>,
 {
     let lift = |value: f64, change: f64| Dual64::new(value, change);
     let given = |n: usize, varied: Option<(usize, usize)>| -> InputOf<M> {
@@ -86,7 +86,7 @@ pub(crate) fn assert_linearised<L, M, P, Q, const N: usize, const D: usize>(
     P: Linearisable<L>,
     M: Effect<Scalar = Dual64>,
     M::Group: LieGroup<Scalar = Dual64, Matrix = SMatrix<Dual64, N, N>, Vector = SVector<Dual64, D>>,
-    Q: Plan<M> + Steerable,
+    Q: Steerable<M>,
     SVector<f64, D>: Coordinates<f64, Square = SMatrix<f64, D, D>>,
 {
     let parameters = stepper.linearised().expect("derivatives").parameters().len();

@@ -11,7 +11,10 @@ use declarations::{
     TopOnCart, Torquer, TwoBodies, UnderwaterBody,
 };
 use liestep::effects::RigidBody;
-use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
+use liestep::effects::joints::{
+    Armature, DryFriction, JointDamping, JointSpring, JointTorque, SliderArmature, SliderDamping, SliderFriction,
+    SliderSpring,
+};
 use liestep::mechanics::Effect;
 use liestep_late::{Declaration, certificate};
 
@@ -77,7 +80,17 @@ fn the_page_of_what_is_proved() {
     let folder = folder("certificates");
     let of = |(name, text): (String, &str)| (name, certificate(with_a_body(text)).unwrap());
     let library = liestep_scene::derived().map(|name| (name.clone(), liestep_scene::declaration(&name).unwrap()));
-    let joints = texts![JointSpring, JointTorque, JointDamping, DryFriction, SliderSpring, SliderDamping];
+    let joints = texts![
+        JointSpring,
+        JointTorque,
+        JointDamping,
+        DryFriction,
+        Armature,
+        SliderSpring,
+        SliderDamping,
+        SliderFriction,
+        SliderArmature,
+    ];
     let declared = texts![
         Alike,
         CayleyTop,

@@ -100,8 +100,11 @@ fn a_double_pendulum() {
         joint("flange", "fixed", ["far", "tool"], "<origin xyz=\"0 0 0.5\"/>"),
     ]);
     let Import { text: scene, remarks } = imported("double-pendulum", &text, false);
-    assert_eq!(remarks, ["joint shoulder: its limits are watched, not imposed"]);
-    assert!(scene.starts_with("# joint shoulder: its limits are watched, not imposed\ntitle = \"arm\"\n"), "{scene}");
+    assert_eq!(remarks, ["limits of joints: 1, watched as events and not imposed"]);
+    assert!(
+        scene.starts_with("# limits of joints: 1, watched as events and not imposed\ntitle = \"arm\"\n"),
+        "{scene}"
+    );
     assert!(
         scene.contains("name = \"shoulder\"\n") && scene.contains("limits = { from = -1.0, to = 1.0 }\n"),
         "{scene}"
@@ -200,9 +203,9 @@ fn whatever_has_no_counterpart_is_listed() {
         "link cross: without a mass between joints, given 0.001 kg",
         "link cross: its inertia isn't positive, given that of a ball of 1 cm, 4e-8 kg m²",
         "link tip: its inertia isn't positive, given that of a ball of 1 cm, 4e-5 kg m²",
-        "joint third: a slider has no dry friction, 3 N",
     ];
     assert_eq!(remarks, expected);
+    assert!(text.contains("friction = { force = 3.0, below = 0.01 }"), "{text}");
     let run = run(&text.replace("duration = 1\n", "duration = 0.05\n"));
     assert!(run.samples().iter().all(|sample| sample.energy.is_finite()));
 }

@@ -1,6 +1,9 @@
 //! Joints in files: bodies that joints place, kinds with their friction, springs and motors, and mistakes with their places.
 
-use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
+use liestep::effects::joints::{
+    Armature, DryFriction, JointDamping, JointSpring, JointTorque, SliderArmature, SliderDamping, SliderFriction,
+    SliderSpring,
+};
 use liestep::mechanics::Effect as _;
 use liestep_scene::{Run, Scene};
 use nalgebra::Vector3;
@@ -90,8 +93,9 @@ fn joints_from_either_end() {
              [[body]]\nname = \"cart\"\nm = 2\nmoments = [1, 1, 1]\n\
              [[body]]\nname = \"pole\"\nm = 0.5\nmoments = [0.03, 0.03, 0.001]\n\
              [[joint]]\nkind = \"slider\"\n{slider}\ndamping = \"0.7 N s/m\"\nstiffness = \"3 N/m\"\n\
+             friction = {{ force = \"50 mN\", below = 0.02 }}\narmature = \"100 g\"\n\
              [[joint]]\nkind = \"pin\"\n{pin}\ndamping = \"0.01 N m s\"\nstiffness = \"0.2 N m/rad\"\n\
-             friction = {{ torque = \"20 mN m\", below = 0.01 }}\n\
+             friction = {{ torque = \"20 mN m\", below = 0.01 }}\narmature = \"20 kg cm²\"\n\
              [run]\nstep = 0.005\nduration = 2\n"
         )
     };
@@ -120,8 +124,11 @@ fn joints_from_either_end() {
         JointTorque::DERIVATION,
         JointDamping::DERIVATION,
         DryFriction::DERIVATION,
+        Armature::DERIVATION,
         SliderSpring::DERIVATION,
         SliderDamping::DERIVATION,
+        SliderFriction::DERIVATION,
+        SliderArmature::DERIVATION,
     ];
     let parts = terms.into_iter().chain(["R_a e_1 · s", "R_a e_2 · R_b n_b"]);
     for part in parts {
@@ -240,8 +247,21 @@ fn mistakes() {
         ),
         (kind("pin", "axes = [[0, 1, 0], [0, 1, 0]]\ndamping = 0"), "20:11: must be above zero"),
         (
+            kind("slider", "axes = [[0, 1, 0], [0, 1, 0]]\nfriction = { torque = 1, below = 1 }"),
+            "20:23: dry friction in a slider has a `force`, N, and the speed `below` which it is viscous, m/s",
+        ),
+        (
+            kind("pin", "axes = [[0, 1, 0], [0, 1, 0]]\nfriction = { torque = 1 }"),
+            "20:12: dry friction has a `torque`, N m, and the rate `below` which it is viscous, rad/s",
+        ),
+        (
             kind("weld", "friction = { torque = 1, below = 1 }"),
-            "19:12: a weld has no dry `friction`: it is for joints that turn",
+            "19:12: a weld has no dry `friction`: it is for joints that turn, and for sliders",
+        ),
+        (kind("weld", "armature = 1"), "19:12: a weld has no `armature`"),
+        (
+            kind("slider", "axes = [[0, 1, 0], [0, 1, 0]]\narmature = \"1 kg m²\""),
+            "20:12: a mass isn't in `kg m²` but in `kg`, `g`, `t`",
         ),
         (
             kind("pin", "axes = [[0, 1, 0], [0, 1, 0]]\nzero = { rpy = [0.1, 0, 0] }"),

@@ -29,6 +29,7 @@ mod runs;
 mod sessions;
 mod several;
 mod signals;
+mod sizes;
 mod sums;
 mod systems;
 mod units;

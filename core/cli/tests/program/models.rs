@@ -169,11 +169,15 @@ fn joints_of_mjcf() {
     assert_eq!(remarks[0], "link a-link-1: without a mass between joints, given 0.001 kg");
     let Import { remarks, .. } =
         of(r#"<joint axis="1 0 0" damping="1"/><joint axis="0 1 0" damping="2" armature="0.1"/>"#);
-    let expected = [
-        "body a: its 2 joints are one, without their springs, friction and limits",
-        "`armature`: 1 without a counterpart",
-    ];
-    assert_eq!(remarks, expected);
+    assert_eq!(remarks, ["body a: its 2 joints are one, without their springs, friction, rotors and limits"]);
+    for (joint, lines) in [
+        (slide(x).replace("/>", r#" frictionloss="3" armature="0.2"/>"#), ["force = 3.0", "armature = 0.2"]),
+        (hinge(y).replace("/>", r#" frictionloss="3" armature="0.2"/>"#), ["torque = 3.0", "armature = 0.2"]),
+    ] {
+        let Import { text, remarks } = of(&joint);
+        assert!(remarks.is_empty() && lines.iter().all(|line| text.contains(line)), "{text}");
+        run(&text);
+    }
 }
 
 /// The angle of a parallelogram of three rods after a second, by the Runge–Kutta method of order four: cranks of 1 m with their

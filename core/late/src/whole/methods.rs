@@ -202,5 +202,5 @@ pub fn for_accuracy<B: Backend<f64>>(
     let candidates: Vec<Candidate> = schemes.into_iter().map(candidate).collect();
     let Question { accuracy, attitude, velocity } = question;
     let beside = declaration.displaced(attitude, &displacement(velocity.len()));
-    Ok(choose(&candidates, accuracy, [attitude, &beside], velocity)?)
+    Ok(choose(&candidates, accuracy, [attitude, &beside], velocity, [&[]; 2])?)
 }

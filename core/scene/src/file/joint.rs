@@ -10,8 +10,8 @@ use toml::Spanned;
 use crate::file::mistake::SpanMessage;
 use crate::file::orbit::put;
 use crate::file::quantity::{
-    Angle, Damping, Direction, Force, Length, LinearDamping, PositiveScalar, Quantity, Rate, Scalar, Speed, Stiffness,
-    Torque, Triple, TurningStiffness, short,
+    Angle, Damping, Direction, Force, Inertia, Length, LinearDamping, Mass, PositiveScalar, Quantity, Rate, Scalar,
+    Speed, Stiffness, Torque, Triple, TurningStiffness, short,
 };
 use crate::file::start::Attitude;
 
@@ -49,8 +49,10 @@ pub(crate) struct Terms {
     pub(crate) rest: f64,
     /// The torque or the force of a motor, N m or N.
     pub(crate) effort: Option<f64>,
-    /// The torque of dry friction, N m, and the rate below which it is viscous, rad/s.
+    /// The torque of dry friction, N m, and the rate below which it is viscous, rad/s; in a slider a force, N, and a speed, m/s.
     pub(crate) friction: Option<[f64; 2]>,
+    /// The inertia of a motor's rotor, as the joint feels it, kg m² or kg.
+    pub(crate) armature: Option<f64>,
 }
 
 impl Terms {
@@ -166,6 +168,7 @@ pub(crate) struct JointTable {
     torque: Value,
     force: Value,
     friction: Option<Spanned<FrictionTable>>,
+    armature: Value,
     limits: Option<Spanned<LimitsTable>>,
     angle: Value,
     rate: Value,
@@ -176,13 +179,43 @@ pub(crate) struct JointTable {
 /// A value whose unit depends on the kind of joint.
 type Value = Option<Spanned<toml::Value>>;
 
-/// Dry friction, regularised.
-#[derive(Clone, Copy, Deserialize)]
+/// Dry friction, regularised: its torque, or its force in a slider.
+#[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FrictionTable {
-    torque: PositiveScalar<Torque>,
-    /// The rate below which friction is viscous.
-    below: PositiveScalar<Rate>,
+    torque: Value,
+    force: Value,
+    /// The rate or the speed below which friction is viscous.
+    below: Value,
+}
+
+impl FrictionTable {
+    /// The torque or the force, and the rate or the speed below which it is viscous.
+    fn friction(&self, span: Range<usize>, is_slider: bool) -> Result<[f64; 2], SpanMessage> {
+        let (own, other, message) = if is_slider {
+            (
+                &self.force,
+                &self.torque,
+                "dry friction in a slider has a `force`, N, and the speed `below` which it is viscous, m/s",
+            )
+        } else {
+            (
+                &self.torque,
+                &self.force,
+                "dry friction has a `torque`, N m, and the rate `below` which it is viscous, rad/s",
+            )
+        };
+        let [most, below] = if is_slider {
+            [positive::<Force>(own)?, positive::<Speed>(&self.below)?]
+        } else {
+            [positive::<Torque>(own)?, positive::<Rate>(&self.below)?]
+        };
+        match (most, below, other) {
+            (Some(most), Some(below), None) => Ok([most, below]),
+            (_, _, Some(other)) => Err((other.span(), message.to_owned())),
+            _ => Err((span, message.to_owned())),
+        }
+    }
 }
 
 /// The ends of a joint's way.
@@ -270,6 +303,7 @@ impl JointTable {
             ("rest", &self.rest, kind.turns_about_axis() && kind != Kind::Plane || is_slider),
             ("torque", &self.torque, kind.turns_about_axis()),
             ("force", &self.force, is_slider),
+            ("armature", &self.armature, of_both),
             ("angle", &self.angle, kind.turns_about_axis()),
             ("rate", &self.rate, kind.turns_about_axis()),
             ("shift", &self.shift, kind.shifts_along_axis()),
@@ -287,8 +321,11 @@ impl JointTable {
                 return refuse(value.span(), format!("a {name} has no `{key}`{instead}"));
             }
         }
-        if let (Some(friction), false) = (&self.friction, kind.turns()) {
-            return refuse(friction.span(), format!("a {name} has no dry `friction`: it is for joints that turn"));
+        if let (Some(friction), false) = (&self.friction, of_both) {
+            return refuse(
+                friction.span(),
+                format!("a {name} has no dry `friction`: it is for joints that turn, and for sliders"),
+            );
         }
         if let (Some(limits), false) = (&self.limits, matches!(kind, Kind::Pin | Kind::Slider)) {
             return refuse(limits.span(), format!("a {name} has no `limits`: those of a pin and a slider are watched"));
@@ -345,10 +382,8 @@ impl JointTable {
             stiffness: by_kind(positive::<TurningStiffness>(&self.stiffness), positive::<Stiffness>(&self.stiffness))?,
             rest: by_kind(read::<Angle>(&self.rest), read::<Length>(&self.rest))?.unwrap_or(0.0),
             effort: by_kind(read::<Torque>(&self.torque), read::<Force>(&self.force))?,
-            friction: self.friction.map(|friction| {
-                let FrictionTable { torque, below } = friction.into_inner();
-                [torque.value, below.value]
-            }),
+            friction: self.friction.map(|one| one.get_ref().friction(one.span(), is_slider)).transpose()?,
+            armature: by_kind(positive::<Inertia>(&self.armature), positive::<Mass>(&self.armature))?,
         };
         let start = Coordinates {
             angle: read::<Angle>(&self.angle)?.unwrap_or(0.0),

@@ -25,7 +25,7 @@ use crate::file::tables::Document;
 /// | `gravity` | `g`, m/s²; `up`, in space |
 /// | `[[joint]]` | `name`, by which programs reach it, by default `joint-1` and so on; `kind`: `ball`, `pin`, `universal`, `cylinder`, `slider`, `weld`, `plane`, `distance`, see [`liestep::methods::Joint`]; `bodies`: two names, of which one may be `space`; `at`: a point of each, m, from the centre of mass in the body's frame, in `space` from the origin; `axes` where the kind has some: one in each of the same frames; `zero`: the attitude of the second body in the frame of the first at the angle zero, by default that of the least turn that makes the axes parallel; `length` of a distance, m |
 /// | | where the joint starts, of a body without a `position`: `angle` and `rate` about the axis, `shift`, m, and `speed`, m/s, along it, of the second body relative to the first, zero by default |
-/// | | in a joint that turns: `damping`, N m s; `stiffness`, N m/rad, with the angle at `rest`; a motor's `torque` about the axis, N m; dry `friction`: its `torque` and the rate `below` which it is viscous. In a slider: `damping`, N s/m; `stiffness`, N/m, with the shift at `rest`; a `force`, N |
+/// | | in a joint that turns: `damping`, N m s; `stiffness`, N m/rad, with the angle at `rest`; a motor's `torque` about the axis, N m; dry `friction`: its `torque` and the rate `below` which it is viscous; the inertia of a motor's rotor behind its gear, `armature`, kg m². In a slider: `damping`, N s/m; `stiffness`, N/m, with the shift at `rest`; a `force`, N; dry `friction`: its `force`, N, and the speed `below` which it is viscous, m/s; `armature`, kg |
 /// | | `limits` of a pin or a slider: `from` and `to`, angles or shifts, and whether the run is to `stop` where the joint passes one of them. They aren't imposed but watched: each passing is an event with the joint's name |
 /// | `[[spring]]` | `bodies`, `at` as for joints; `k`, N/m, and the `length` at rest, m |
 /// | numbers over time | as for [one body](crate::SceneFile): of `torque`, `force`, `stiffness`, `rest`, `damping` and `friction` in a joint, of a spring, of the effects on a body, and `g` |
@@ -106,6 +106,25 @@ impl System {
     /// The numbers of the joints with limits, and the limits.
     pub(crate) fn limited(&self) -> impl Iterator<Item = (usize, Limits)> {
         self.joints.iter().enumerate().filter_map(|(number, joint)| Some((number, joint.of.limits?)))
+    }
+
+    /// The largest length of the system's own, m, in which its places and their rounding errors are counted: radii of gyration, points
+    /// of joints and springs from their bodies, rods, springs, and shifts at the start. It is one where all these are zero.
+    pub(crate) fn size(&self) -> f64 {
+        let radius = |body: &SystemBody| body.J.as_ref().map(|J| (J.as_matrix().trace() / (2.0 * body.m)).sqrt());
+        let arm = |(body, at): (Option<usize>, Vector3<f64>)| body.map_or(0.0, |_| at.norm());
+        let of_joint = |Between { bodies, of }: &Between<Joint>| {
+            let [one, other] = [0, 1].map(|side| arm((bodies[side], of.at[side])));
+            [one, other, of.length, of.start.shift.abs()]
+        };
+        let of_spring = |Between { bodies, of }: &Between<Spring>| {
+            let [one, other] = [0, 1].map(|side| arm((bodies[side], of.at[side])));
+            [one, other, of.length]
+        };
+        let of_joints = self.joints.iter().flat_map(of_joint);
+        let all = self.bodies.iter().filter_map(radius).chain(of_joints).chain(self.springs.iter().flat_map(of_spring));
+        let largest = all.fold(0.0, f64::max);
+        if largest > 0.0 { largest } else { 1.0 }
     }
 
     /// The place of the first number of a sample that is one of joints.

@@ -31,6 +31,8 @@ pub(super) struct Robot {
     pub(super) gravity: Vector3<f64>,
     /// Whether the root is the world, which is space.
     pub(super) has_world: bool,
+    /// The number of joints with limits.
+    pub(super) watched: usize,
 }
 
 impl Default for Robot {
@@ -43,6 +45,7 @@ impl Default for Robot {
             remarks: Vec::new(),
             gravity,
             has_world: false,
+            watched: 0,
         }
     }
 }
@@ -70,6 +73,8 @@ pub(super) struct Joint {
     pub(super) damping: f64,
     /// N m, or N.
     pub(super) friction: f64,
+    /// The inertia of a motor's rotor behind its gear, kg m² or kg.
+    pub(super) armature: f64,
     /// The ends of the joint's way, rad or m.
     pub(super) limits: Option<[f64; 2]>,
     /// N m/rad, or N/m.
@@ -87,8 +92,23 @@ impl Joint {
     ) -> Self {
         let at = Vector3::zeros();
         let (closes, limits) = (false, None);
-        let [damping, friction, stiffness, rest] = [0.0; 4];
-        Self { name, place, parent, child, origin, at, connection, closes, damping, friction, limits, stiffness, rest }
+        let (damping, friction, armature, stiffness, rest) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        Self {
+            name,
+            place,
+            parent,
+            child,
+            origin,
+            at,
+            connection,
+            closes,
+            damping,
+            friction,
+            armature,
+            limits,
+            stiffness,
+            rest,
+        }
     }
 }
 
@@ -158,7 +178,7 @@ const RADIUS: f64 = 0.01;
 /// The mass of a link without one, relative to the least mass of the others.
 const LIGHT: f64 = 1e-3;
 
-/// The rate below which dry friction is viscous, rad/s.
+/// The rate below which dry friction is viscous, rad/s, and in sliders the speed, m/s.
 const CREEP: f64 = 0.01;
 
 impl Robot {
@@ -207,6 +227,9 @@ impl Robot {
             if is_there[number] || (self.joints[arm.joint].closes && is_there[arm.parent]) {
                 self.joint(&mut text, (&arm, &of_joints[arm.joint]), ends);
             }
+        }
+        if self.watched > 0 {
+            self.remarks.push(format!("limits of joints: {}, watched as events and not imposed", self.watched));
         }
         let head = self.head();
         let run = "[run]\nstep = \"1 ms\"\nduration = 1\n";
@@ -365,8 +388,7 @@ impl Robot {
 
     /// The table of a joint between two bodies, each with its name and its centre of mass: that above and that below.
     fn joint(&mut self, text: &mut String, (arm, plain): (&Arm, &str), ends: [(&str, Vector3<f64>); 2]) {
-        let Joint { name, connection, at, closes, damping, friction, limits, stiffness, rest, .. } =
-            &self.joints[arm.joint];
+        let Joint { connection, at, closes, .. } = &self.joints[arm.joint];
         let Some((kind, axes)) = connection.kind() else { return };
         let [(above, centre), (below, own)] = ends;
         let [at_above, at_below] = [(&arm.frame, centre), (&arm.own, own)]
@@ -388,21 +410,31 @@ impl Robot {
         if has_coordinate && !closes {
             text.push_str(if kind == "pin" { "angle = 0\n" } else { "shift = 0\n" });
         }
-        if *damping > 0.0 && kind == "weld" {
-            self.remarks.push(format!("joint {name}: it is fixed, and its damping is left out"));
-        } else if *damping > 0.0 {
-            let _ = writeln!(text, "damping = {}", written(*damping));
-        }
-        if *friction > 0.0 && matches!(kind, "slider" | "weld") {
-            self.remarks.push(format!("joint {name}: a {kind} has no dry friction, {} N", short(*friction)));
-        } else if *friction > 0.0 {
-            let _ = writeln!(text, "friction = {{ torque = {}, below = {CREEP} }}", written(*friction));
+        self.terms(text, (arm.joint, kind));
+        text.push('\n');
+    }
+
+    /// What acts in a joint of this kind, and its limits.
+    fn terms(&mut self, text: &mut String, (joint, kind): (usize, &str)) {
+        let Joint { name, damping, friction, armature, limits, stiffness, rest, .. } = &self.joints[joint];
+        let most = if kind == "slider" { "force" } else { "torque" };
+        let terms = [
+            ("damping", *damping, written(*damping)),
+            ("friction", *friction, format!("{{ {most} = {}, below = {CREEP} }}", written(*friction))),
+            ("armature", *armature, written(*armature)),
+        ];
+        for (key, size, value) in terms.into_iter().filter(|(_, size, _)| *size > 0.0) {
+            if kind == "weld" {
+                self.remarks.push(format!("joint {name}: it is fixed, and its {key} is left out, {}", short(size)));
+            } else {
+                let _ = writeln!(text, "{key} = {value}");
+            }
         }
         if *stiffness > 0.0 && matches!(kind, "plane" | "weld") {
             self.remarks.push(format!("joint {name}: a {kind} has no spring, {} N m/rad", short(*stiffness)));
         } else if *stiffness > 0.0 {
             let _ = writeln!(text, "stiffness = {}", written(*stiffness));
-            if has_coordinate {
+            if matches!(kind, "pin" | "slider") {
                 let _ = writeln!(text, "rest = {}", angle(*rest, kind));
             }
         }
@@ -412,12 +444,11 @@ impl Robot {
             }
             (Some([from, to]), "pin" | "slider") => {
                 let _ = writeln!(text, "limits = {{ from = {}, to = {} }}", angle(*from, kind), angle(*to, kind));
-                self.remarks.push(format!("joint {name}: its limits are watched, not imposed"));
+                self.watched += 1;
             }
             (Some(_), _) => self.remarks.push(format!("joint {name}: a {kind} has no limits")),
             (None, _) => (),
         }
-        text.push('\n');
     }
 }
 

@@ -4,7 +4,10 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::sync::Arc;
 
-use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
+use liestep::effects::joints::{
+    Armature, DryFriction, JointDamping, JointSpring, JointTorque, SliderArmature, SliderDamping, SliderFriction,
+    SliderSpring,
+};
 use liestep::effects::{Rotor, Torque};
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
@@ -224,7 +227,7 @@ impl System {
     }
 }
 
-/// Adds the springs, the friction and the motor of a joint.
+/// Adds the springs, the friction, the motor and its rotor of a joint.
 fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) {
     let Joint { kind, at, axes, terms, .. } = *joint;
     if kind == Kind::Slider {
@@ -236,6 +239,12 @@ fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) 
         }
         if let Some(c) = terms.damping {
             system.between(bodies, SliderDamping { c, axis });
+        }
+        if let Some([force, speed]) = terms.friction {
+            system.between(bodies, SliderFriction { force, speed, axis });
+        }
+        if let Some(a) = terms.armature {
+            system.between(bodies, SliderArmature { a, axis, at_2: at[1] });
         }
         return;
     }
@@ -251,6 +260,9 @@ fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) 
     }
     if let Some([torque, rate]) = terms.friction {
         system.between(bodies, DryFriction { torque, rate });
+    }
+    if let Some(a) = terms.armature {
+        system.between(bodies, Armature { a });
     }
 }
 

@@ -75,11 +75,12 @@ fn largest(run: &Run, parts: Option<&Places>) -> [f64; 3] {
 /// agree to some digits.
 const SAME_TIME: f64 = 1e-3;
 
-/// The line about the end of a run; `order` is that of its method. `again` simulates by this number of steps in the place of the
-/// first, which is that of the run, or of an orbit. A scene on a group other than SO(3) has `parts`.
+/// The line about the end of a run; `order` is that of its method, and `size` the length of the system, m. `again` simulates by this
+/// number of steps in the place of the first, which is that of the run, or of an orbit. A scene on a group other than SO(3) has
+/// `parts`.
 fn line(
     run: &Run,
-    (order, steps): (u32, u32),
+    (order, steps, size): (u32, u32, f64),
     parts: Option<&Places>,
     again: impl Fn(u32) -> Result<Run, Stop>,
 ) -> Option<String> {
@@ -94,7 +95,7 @@ fn line(
     let [turning, moving, way] = largest(run, parts);
     // Slower motions are rounding errors.
     let floor = 1e-6 / run.samples().last()?.time;
-    let limits = [ANOTHER, SHARE * turning.max(floor), SHARE * way.max(1e-6), SHARE * moving.max(floor)];
+    let limits = [ANOTHER, SHARE * turning.max(floor), SHARE * way.max(1e-6 * size), SHARE * moving.max(floor * size)];
     let another = |Differences(apart): &Differences| {
         let place = if parts.is_some() { "attitude" } else { "position" };
         let names = ["attitude", "angular velocity", place, "velocity"].into_iter();
@@ -154,6 +155,7 @@ impl Scene {
             file.run.pace = pace.map_err(|_| Stop::Other("too many steps".to_owned()))?;
             file.simulate(Listeners { progress: &mut |_| (), table: None })
         };
-        line(run, (file.order(), steps), file.places().as_ref(), again).unwrap_or_default()
+        let size = file.system.as_ref().map_or(1.0, |system| system.size());
+        line(run, (file.order(), steps, size), file.places().as_ref(), again).unwrap_or_default()
     }
 }

@@ -75,9 +75,10 @@ pub(crate) fn inverse_root(J: &Inertia) -> Matrix3<f64> {
     eigenvectors * Matrix3::from_diagonal(&eigenvalues.map(|moment| moment.sqrt().recip())) * eigenvectors.transpose()
 }
 
-/// `J^{-1/2}` of a body; a point mass counts as a ball of a millimetre, whose turns are fast enough to follow its joints.
-fn inverse_root_of(body: &SystemBody) -> Matrix3<f64> {
-    let of_ball = || Matrix3::identity() / (4e-7 * body.m).sqrt();
+/// `J^{-1/2}` of a body; a point mass counts as a ball of a thousandth of the system's size, m, whose turns are fast enough to follow
+/// its joints.
+fn inverse_root_of(body: &SystemBody, size: f64) -> Matrix3<f64> {
+    let of_ball = || Matrix3::identity() / (4e-7 * body.m).sqrt() / size;
     body.J.as_ref().map_or_else(of_ball, inverse_root)
 }
 
@@ -155,7 +156,8 @@ impl System {
     fn moved(&self, places: &[(SO3, R3)], body: Option<usize>, point: &Vector3<f64>) -> Matrix3xX<f64> {
         let mut moved = Matrix3xX::zeros(6 * self.bodies.len());
         if let Some(body) = body {
-            let turned = places[body].0.as_matrix() * -point.cross_matrix() * inverse_root_of(&self.bodies[body]);
+            let turned =
+                places[body].0.as_matrix() * -point.cross_matrix() * inverse_root_of(&self.bodies[body], self.size());
             moved.fixed_columns_mut::<3>(6 * body).copy_from(&turned);
             let shifted = Matrix3::identity() / self.bodies[body].m.sqrt();
             moved.fixed_columns_mut::<3>(6 * body + 3).copy_from(&shifted);
@@ -171,12 +173,13 @@ impl System {
                 Place { attitude: *attitude.as_matrix(), position: position.translation() }
             })
         };
+        let size = self.size();
         let held = self.joints.iter().map(|joint| {
             let mut held = DMatrix::zeros(6, 6 * self.bodies.len());
             let slopes = joint.of.constraint().slope(&place(joint.bodies[0]), &place(joint.bodies[1]));
             for (body, slope) in joint.bodies.into_iter().zip(slopes) {
                 let Some(body) = body else { continue };
-                let turned = slope.turn * places[body].0.as_matrix() * inverse_root_of(&self.bodies[body]);
+                let turned = slope.turn * places[body].0.as_matrix() * inverse_root_of(&self.bodies[body], size);
                 held.fixed_columns_mut::<3>(6 * body).copy_from(&turned);
                 held.fixed_columns_mut::<3>(6 * body + 3).copy_from(&(slope.shift / self.bodies[body].m.sqrt()));
             }

@@ -159,8 +159,20 @@ impl System {
         let has_steps_back = self.one_way().is_none();
         let candidates: Vec<_> = of_any_group(has_steps_back).map(candidate).collect();
         let beside = displaced(attitude);
-        let chosen = choose(&candidates, accuracy, [attitude, &beside], &velocity);
+        let units = self.units();
+        let chosen = choose(&candidates, accuracy, [attitude, &beside], &velocity, units.each_ref().map(Vec::as_slice));
         chosen.map(|(_, choice)| choice).map_err(Stop::Accuracy)
+    }
+
+    /// The units in which attitudes and velocities count in an error: places and speeds in those of the system's size.
+    fn units(&self) -> [Vec<f64>; 2] {
+        let (bodies, size) = (self.bodies.len(), self.size());
+        let mut attitude = vec![1.0; ENTRIES * bodies];
+        for body in attitude.chunks_mut(ENTRIES) {
+            (0..3).for_each(|row| body[coordinate(row)] = size);
+        }
+        let velocity = (0..6 * bodies).map(|part| if part % 6 < 3 { 1.0 } else { size });
+        [attitude, velocity.collect()]
     }
 
     /// The events of joints with limits.
@@ -206,6 +218,7 @@ impl System {
     /// Differences between the start of a run and that of the file.
     pub(crate) fn changes(&self, run: &Run) -> String {
         let Some(start) = run.samples().first() else { return String::new() };
+        let size = self.size();
         let line = |(given, now): (&SystemBody, &BodySample)| {
             let turned = SO3::from(given.start.attitude).as_matrix() - now.attitude.as_matrix();
             let turned = 2.0 * (turned.norm() / 8.0_f64.sqrt()).min(1.0).asin();
@@ -213,9 +226,11 @@ impl System {
                 [given.position - now.position, given.moving - now.moving, given.start.velocity - now.velocity]
                     .map(|change| change.norm());
             // Smaller changes are rounding errors.
-            let is_changed = moved.max(faster).max(quicker).max(turned) > 1e-9;
-            let [moved, turned, faster, quicker] = [moved, turned, faster, quicker]
-                .map(|change| if change > 1e-9 { round(change) } else { "0".to_owned() });
+            let least = [1e-9 * size, 1e-9];
+            let is_changed = moved.max(faster) > least[0] || quicker.max(turned) > least[1];
+            let [moved, turned, faster, quicker] =
+                [(moved, least[0]), (turned, least[1]), (faster, least[0]), (quicker, least[1])]
+                    .map(|(change, least)| if change > least { round(change) } else { "0".to_owned() });
             let changes = format!(
                 "moved by {moved} m, turned by {turned} rad, its velocity by {faster} m/s, its angular velocity by {quicker} rad/s"
             );
@@ -225,10 +240,14 @@ impl System {
     }
 }
 
+/// The place of a coordinate among the numbers of a body's attitude.
+fn coordinate(row: usize) -> usize {
+    9 + 4 * row + 3
+}
+
 /// An attitude beside another, by some roundings of turns and of the largest coordinate.
 fn displaced(attitude: &[f64]) -> Vec<f64> {
     let mut beside = attitude.to_vec();
-    let coordinate = |row: usize| 9 + 4 * row + 3;
     let bodies = || attitude.chunks(ENTRIES);
     let size = bodies().flat_map(|body| (0..3).map(|row| body[coordinate(row)].abs())).fold(0.0, f64::max);
     let by = displacement(6);

@@ -1,6 +1,9 @@
 //! The derived equations of the effects, as text.
 
-use liestep::effects::joints::{DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderSpring};
+use liestep::effects::joints::{
+    Armature, DryFriction, JointDamping, JointSpring, JointTorque, SliderArmature, SliderDamping, SliderFriction,
+    SliderSpring,
+};
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::mechanics::Effect;
 use liestep_late::{Declaration, LateError};
@@ -181,9 +184,12 @@ impl System {
             (JointSpring::DERIVATION, any(&|joint| !slides(joint) && joint.terms.stiffness.is_some())),
             (JointTorque::DERIVATION, any(&|joint| !slides(joint) && joint.terms.effort.is_some())),
             (JointDamping::DERIVATION, any(&|joint| !slides(joint) && joint.terms.damping.is_some())),
-            (DryFriction::DERIVATION, any(&|joint| joint.terms.friction.is_some())),
+            (DryFriction::DERIVATION, any(&|joint| !slides(joint) && joint.terms.friction.is_some())),
+            (Armature::DERIVATION, any(&|joint| !slides(joint) && joint.terms.armature.is_some())),
             (SliderSpring::DERIVATION, any(&|joint| slides(joint) && joint.terms.has_spring())),
             (SliderDamping::DERIVATION, any(&|joint| slides(joint) && joint.terms.damping.is_some())),
+            (SliderFriction::DERIVATION, any(&|joint| slides(joint) && joint.terms.friction.is_some())),
+            (SliderArmature::DERIVATION, any(&|joint| slides(joint) && joint.terms.armature.is_some())),
         ];
         let terms: String = terms.into_iter().filter_map(|(text, is_there)| is_there.then_some(text)).collect();
         let balls = if any(&|joint| joint.kind.has_one_point()) { BALLS } else { "" };

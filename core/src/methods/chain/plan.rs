@@ -9,7 +9,7 @@ use super::link::Link;
 use crate::error::{SetupError, StepError};
 use crate::groups::{CayleyRetraction, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
-use crate::motion::{Cost, Motion, Plan, Steerable, StepReport, Stepper, Summation, SumsOf, Variable};
+use crate::motion::{Cost, Motion, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, Summation, SumsOf, Variable};
 use crate::numbers::{
     Bodies, Columns, Coordinates as _, OnRegisters, Plain, Register, Vectors, cross, filled, on_registers, padded,
     square, vector,
@@ -288,8 +288,8 @@ pub(super) fn at_rest<R: Register, const N: usize>(zero: R) -> [Work<R>; N] {
     core::array::from_fn(|_| Work::none(zero))
 }
 
-impl<S: Effect, const N: usize> Steerable for LinkedBodies<S, N> {}
-impl<S: Effect, const N: usize> Variable for LinkedBodies<S, N> {}
+impl<S: Effect<Scalar = f64, Group = [SO3; N]>, const N: usize> Steerable<S> for LinkedBodies<S, N> {}
+impl<S: Effect<Scalar = f64, Group = [SO3; N]>, const N: usize> Variable<S> for LinkedBodies<S, N> {}
 
 impl<S, const N: usize> Plan<S> for LinkedBodies<S, N>
 where
@@ -298,9 +298,8 @@ where
     type Kept = WarmStart<Components<N>>;
 
     /// Each step chooses its vector instructions itself.
-    const VECTORS: Vectors = Vectors::AsCompiled;
-    const RUNS_BY_STEPS: bool = true;
-    const HAS_OWN_INERTIA: bool = true;
+    const FACTS: PlanFacts =
+        PlanFacts { vectors: Vectors::AsCompiled, runs: Runs::BySteps, has_own_inertia: true, ..PlanFacts::of::<S>() };
 
     fn step_size(&self) -> f64 {
         self.h

@@ -11,7 +11,8 @@ use crate::gradients::{ChangeOf, Linearisable, Pass, Stage as Linear};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
-    Cost, MotionOf, OwnStep, Plan, Steerable, StepReport, Stepper, SumsOf, Variable, beyond_solvable, half_coordinates,
+    Cost, MotionOf, OwnStep, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, SumsOf, Variable, beyond_solvable,
+    half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
 use crate::solving::Guess;
@@ -183,30 +184,7 @@ impl<S: Effect> Composition<S> {
     }
 }
 
-impl<S: Effect> Steerable for Composition<S> {}
-impl<S: Effect> Variable for Composition<S> {}
-
-impl<S: Effect> Plan<S> for Composition<S> {
-    type Kept = Guess<Vector<S>>;
-
-    fn step_size(&self) -> Scalar<S> {
-        self.h
-    }
-
-    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
-        Self::new(scene, h, self.scheme)
-    }
-
-    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
-        Guess::of(half_coordinates(scene, motion, self.substeps[0].step_size()))
-    }
-
-    /// The report's iterations are the sum over all stages.
-    #[hot]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
-        self.each(scene, motion, kept, &mut |_, _| Ok(()))
-    }
-
+impl<S: Effect> Steerable<S> for Composition<S> {
     /// Each stage takes the values of its own middle.
     #[hot]
     fn step_seeing(
@@ -246,10 +224,33 @@ impl<S: Effect> Plan<S> for Composition<S> {
         next.steps = motion.steps;
         Ok(next)
     }
+}
+
+impl<S: Effect> Variable<S> for Composition<S> {}
+
+impl<S: Effect> Plan<S> for Composition<S> {
+    type Kept = Guess<Vector<S>>;
+
+    fn step_size(&self) -> Scalar<S> {
+        self.h
+    }
+
+    fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
+        Self::new(scene, h, self.scheme)
+    }
+
+    fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {
+        Guess::of(half_coordinates(scene, motion, self.substeps[0].step_size()))
+    }
+
+    /// The report's iterations are the sum over all stages.
+    #[hot]
+    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
+        self.each(scene, motion, kept, &mut |_, _| Ok(()))
+    }
 
     /// [`StepError::BeyondSolvable`] reports the limit of the whole step, not of a substep.
-    const EXPLAINS: bool = true;
-    const RUNS_BY_STEPS: bool = true;
+    const FACTS: PlanFacts = PlanFacts { explains: true, runs: Runs::BySteps, ..PlanFacts::of::<S>() };
 
     #[cold]
     fn explained(&self, error: StepError, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept) -> StepError {

@@ -21,7 +21,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor, constant_inertia};
 use crate::methods::splitting::torque;
-use crate::motion::{Cost, Motion, OwnStep, Plan, Stepper, Summation, SumsOf, Variable};
+use crate::motion::{Cost, Motion, OwnStep, Plan, PlanFacts, Runs, Stepper, Summation, SumsOf, Variable};
 use crate::numbers::{Vectors, two_sum};
 use nalgebra::Vector3;
 
@@ -158,13 +158,17 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
     }
 }
 
-impl<S: Effect, const PAIRS: usize> Variable for Gauss<S, PAIRS> {}
+impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Variable<S> for Gauss<S, PAIRS> {}
 
 impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS> {
     type Kept = CollocationMemory<PAIRS>;
 
     // Four stages fill four lanes; registers of eight would require shuffles.
-    const VECTORS: Vectors = if PAIRS > 2 { Vectors::Eight } else { Vectors::Four };
+    const FACTS: PlanFacts = PlanFacts {
+        vectors: if PAIRS > 2 { Vectors::Eight } else { Vectors::Four },
+        runs: Runs::AsSteps,
+        ..PlanFacts::of::<S>()
+    };
 
     fn step_size(&self) -> f64 {
         self.h
@@ -177,8 +181,6 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
     fn keep(&self, _: &S, motion: &Motion<SO3, S::Advected>) -> Self::Kept {
         CollocationMemory::of(motion.attitude, &motion.momentum)
     }
-
-    const STEPS_BY_RUNS: bool = true;
 
     /// Attitude and momentum are computed from the quaternion only after the last step. The step fails with
     /// [`StepError::NotConverged`] if it is too long for the iteration.

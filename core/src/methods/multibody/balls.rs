@@ -4,9 +4,9 @@ use nalgebra::{Matrix3, Matrix6, Vector6};
 
 use super::constraint::Place;
 use super::graph::Tree;
-use super::nodes::Node;
-use super::square::{shift_of, turn_of, write};
-use crate::numbers::{OnRegisters, Register};
+use super::nodes::{Node, Pair};
+use super::square::{shift_of, stored, three, turn_of, write};
+use crate::numbers::{OnRegisters, Register, cross, dot, padded, vector};
 
 /// The slopes of ball joints at these places: `S`, or `T` for unknowns that turn the bodies by these maps.
 pub(super) struct BallSlopes<'a> {
@@ -37,6 +37,51 @@ impl OnRegisters for BallSlopes<'_> {
     }
 }
 
+/// The places after half increments, and the turns in the axes of space by the unknowns, `½ R T` with the tangent
+/// `T = 2 (I + ŷ)/(1 + |y|²)` of the Cayley map; so `R F = R + R T ŷ`. The shifts of bodies on ball joints follow from the turns: with half the shift `u` of
+/// the joint's point, which a turn of the parent moves by `½ R D ρ = ½ R T (y × ρ)`, they leave no gap.
+pub(super) struct Increments<'a> {
+    pub(super) tree: &'a Tree,
+    pub(super) nodes: &'a [Node],
+    pub(super) places: &'a [Place],
+    pub(super) half: &'a mut [Vector6<f64>],
+    pub(super) next: &'a mut [Place],
+    pub(super) turns: &'a mut [Matrix3<f64>],
+    /// Half the shift of each ball joint's point, and its position after the step; of other bodies their own.
+    pub(super) points: &'a mut [Pair],
+}
+
+impl OnRegisters for Increments<'_> {
+    type Output = ();
+
+    #[hot]
+    fn run<R: Register>(self, zero: R) {
+        let Self { tree, nodes, places, half, next, turns, points } = self;
+        for &k in &tree.order {
+            let (place, y) = (&places[k], turn_of(zero, &half[k]));
+            let (attitude, one) = (stored(zero, &place.attitude), zero.of([1.0; 4]));
+            let turn = (attitude + attitude.cross_rows(y)).scaled(one / (one + dot(y, y)));
+            let after = attitude + turn.cross_rows(y).scaled(one + one);
+            (next[k].attitude.data.0, turns[k].data.0) = (three(after), three(turn));
+            let Some(ball) = &nodes[k].ball else {
+                next[k].position = place.position + vector(shift_of(zero, &half[k])) * 2.0;
+                points[k] = [shift_of(zero, &half[k]).entries(), padded(&next[k].position)];
+                continue;
+            };
+            let [own, arm] = ball.arms(zero);
+            let (mut moved, mut point) = (zero, arm);
+            if let Some(parent) = tree.members[k].parent {
+                let [of_parent, position] = points[parent];
+                moved = zero.of(of_parent) + stored(zero, &turns[parent]).map(cross(turn_of(zero, &half[parent]), arm));
+                point = zero.of(position) + stored(zero, &next[parent].attitude).map(arm);
+            }
+            points[k] = [moved.entries(), point.entries()];
+            next[k].position = vector(point - after.map(own));
+            write(&mut half[k], [y, moved - turn.map(cross(y, own))]);
+        }
+    }
+}
+
 /// The matrices of bodies on ball joints.
 pub(super) struct BallMatrices<'a> {
     pub(super) nodes: &'a mut [Node],
@@ -56,7 +101,7 @@ impl OnRegisters for BallMatrices<'_> {
     }
 }
 
-/// The momenta that the multipliers of ball joints take.
+/// The momenta that the multipliers of ball joints take from all bodies.
 pub(super) struct BallReactions<'a> {
     pub(super) tree: &'a Tree,
     pub(super) nodes: &'a [Node],
@@ -70,22 +115,18 @@ impl OnRegisters for BallReactions<'_> {
     #[hot]
     fn run<R: Register>(self, zero: R) {
         let Self { tree, nodes, multipliers, reactions } = self;
-        for (k, node) in nodes.iter().enumerate() {
-            let Some(ball) = &node.ball else { continue };
-            let [own, of_parent] = ball.reactions(zero, &multipliers[k]);
-            add_pair(zero, &mut reactions[k], own);
+        for &k in tree.order.iter().rev() {
+            let Some(ball) = &nodes[k].ball else { continue };
+            let of_others = [turn_of(zero, &reactions[k]), shift_of(zero, &reactions[k])];
+            let [own, of_parent] = ball.reactions(zero, of_others, &multipliers[k]);
+            write(&mut reactions[k], own);
             if let Some(parent) = tree.members[k].parent {
-                add_pair(zero, &mut reactions[parent], of_parent);
+                let to = &mut reactions[parent];
+                let sum = [turn_of(zero, to) + of_parent[0], shift_of(zero, to) + of_parent[1]];
+                write(to, sum);
             }
         }
     }
-}
-
-/// Adds a turn and a shift.
-#[hot]
-fn add_pair<R: Register>(zero: R, to: &mut Vector6<f64>, [turn, shift]: [R; 2]) {
-    let sum = [turn_of(zero, to) + turn, shift_of(zero, to) + shift];
-    write(to, sum);
 }
 
 /// The slopes `T = S` of ball joints.

@@ -102,10 +102,11 @@ impl MultibodyStepper {
             of_stage.extend_from_slice(&whole[..head]);
             of_stage.extend_from_slice(&whole[memory.clone()]);
             of_stage.push(steps);
+            stepper.offsets.start_from_momenta(&mut of_stage, 0);
             if let Some(all) = &mut of_step {
                 all.fill(Vector6::zeros());
             }
-            let report = stepper.step_in(&mut of_stage, work, of_step.as_deref_mut(), false)?;
+            let report = stepper.step_in(&mut of_stage, work, of_step.as_deref_mut())?;
             for (force, part) in forces.iter_mut().flat_map(|all| all.iter_mut()).zip(of_step.iter().flatten()) {
                 *force += part * *gamma;
             }

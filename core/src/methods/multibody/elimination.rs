@@ -105,10 +105,15 @@ impl OnRegisters for Factorisation<'_> {
                 && let Ok([node, parent]) = nodes.get_disjoint_mut([k, parent])
                 && let Some(ball) = &node.ball
             {
-                let added = ball.of_parent(zero);
+                let (added, coupled) = (ball.of_parent(zero), ball.of_coupled_parent(zero));
                 match &mut parent.ball {
                     Some(ball) => ball.add(zero, added),
                     None => add_blocks(&mut parent.matrix, added),
+                }
+                match (&mut parent.ball, coupled) {
+                    (_, None) => {}
+                    (Some(ball), Some(coupled)) => ball.add_from_origin(zero, coupled),
+                    (None, Some(coupled)) => add_blocks(&mut parent.matrix, coupled),
                 }
             }
         }
@@ -299,7 +304,8 @@ struct Substitution<'a> {
     nodes: &'a [Node],
     of_bodies: &'a mut [Vector6<f64>],
     of_joints: &'a mut [Vector6<f64>],
-    /// The sums that bodies on ball joints add to their parents, then `w` and `q`, then the unknowns.
+    /// The sums that bodies on ball joints add to their parents, then `w` and `q`, then the turn and the point's shift, or the
+    /// shift of a body without a ball joint.
     pairs: &'a mut [Pair],
 }
 
@@ -326,17 +332,22 @@ impl OnRegisters for Substitution<'_> {
         let Self { tree, nodes, of_bodies, of_joints, pairs } = self;
         let mut size = Vector2::zeros();
         for &k in tree.order.iter().rev() {
-            let right = sum([turn_of(zero, &of_bodies[k]), shift_of(zero, &of_bodies[k])], pair(zero, &pairs[k]));
+            let (own, hanging) = ([turn_of(zero, &of_bodies[k]), shift_of(zero, &of_bodies[k])], pair(zero, &pairs[k]));
             let Some(ball) = &nodes[k].ball else {
-                write(&mut of_bodies[k], right);
+                write(&mut of_bodies[k], sum(own, hanging));
                 size += reduce(&nodes[k], k, of_bodies, of_joints);
                 continue;
             };
-            let (own, added, opposed) = ball.inwards(zero, right, &mut of_joints[k]);
+            let (own, added, opposed) = ball.inwards(zero, own, hanging, &mut of_joints[k]);
             pairs[k] = stored_pair(own);
             size += opposed;
             if let Some(parent) = tree.members[k].parent {
                 pairs[parent] = stored_pair(sum(pair(zero, &pairs[parent]), added));
+                if let Some(coupled) = ball.coupled(zero, own[0], &of_joints[k]) {
+                    let to = &mut of_bodies[parent];
+                    let added = sum([turn_of(zero, to), shift_of(zero, to)], coupled);
+                    write(to, added);
+                }
             }
         }
         for &k in &tree.order {
@@ -351,7 +362,7 @@ impl OnRegisters for Substitution<'_> {
             }
             let unknowns = ball.outwards(zero, pair(zero, &pairs[k]), parent, &mut of_joints[k]);
             pairs[k] = stored_pair(unknowns);
-            write(&mut of_bodies[k], unknowns);
+            write(&mut of_bodies[k], [unknowns[0], ball.shift(zero, unknowns)]);
         }
         size
     }

@@ -2,18 +2,19 @@
 
 use alloc::vec::Vec;
 
-use nalgebra::{Matrix3, Matrix6, Vector2, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector2, Vector3, Vector6};
 
 roots!();
 
 use super::ball::Ball;
-use super::balls::{BallMatrices, BallReactions, BallSlopes, BallVelocities};
+use super::balls::{BallMatrices, BallReactions, BallSlopes, BallVelocities, Increments};
 use super::constraint::Place;
 use super::couplings::Coefficients;
 use super::elimination::{factorise, solve};
 use super::ends::Ends;
 use super::graph::{Joint, Member, Neighbour, Tree};
 use super::nodes::{Loop, Node, Unknowns, set_blocks};
+use super::point_joint::PointJoint;
 use super::{parts, place_of};
 use crate::numbers::on_registers;
 
@@ -69,6 +70,14 @@ pub(super) fn gap(joined: &Joint, places: &[Place]) -> Vector6<f64> {
     }
 }
 
+/// The functions of a joint at these places, in which its points are held if it holds points.
+pub(super) fn held_gap(joined: &Joint, places: &[Place], is_held: bool) -> Vector6<f64> {
+    match &joined.of_points {
+        Some(joint) if is_held => joint.cosines(place_of(places, joined.above), &places[joined.below]),
+        _ => gap(joined, places),
+    }
+}
+
 /// The gap of a joint by all its functions, if some of them aren't imposed.
 pub(super) fn gap_of_all(joined: &Joint, places: &[Place]) -> Option<Vector6<f64>> {
     joined.functions.gap_of_all(place_of(places, joined.above), &places[joined.below])
@@ -79,24 +88,30 @@ impl Equations {
     pub(super) fn fit(&mut self, joints: &[Joint], tree: &Tree) {
         let rows = |joint: Option<usize>| joint.map_or(0, |joint| joints[joint].rows);
         let all = [tree.members.len(), tree.loops.len()];
-        let of_points = |member: &Member, neighbours: &[Neighbour]| {
-            let is_parent = |neighbour: &Neighbour| Some(neighbour.body) == member.parent;
-            let is_alone = neighbours.iter().all(|neighbour| is_parent(neighbour) || !neighbour.is_coupled);
-            member.joint.and_then(|joint| joints[joint].of_points).filter(|_| is_alone && neighbours.len() < 2)
+        let of_points = |body: usize| tree.of_points(joints, body);
+        // The point of the parent's own joint.
+        let from = |member: &Member| {
+            let joint = member.parent.and_then(of_points);
+            let is_below = member.parent.is_some_and(|parent| tree.members[parent].is_below);
+            joint.map_or_else(Vector3::zeros, |joint| joint.points[usize::from(is_below)])
         };
         let is_coupled = |neighbours: &[Neighbour]| neighbours.iter().any(|neighbour| neighbour.is_coupled);
-        let node = |(member, neighbours): (&Member, &Vec<_>)| Node {
-            ball: of_points(member, neighbours).map(|joint| Ball::new(joint, member.is_below, is_coupled(neighbours))),
-            ..Node::new(rows(member.joint), member.parent.is_some(), neighbours)
+        let ball = |body: usize, joint: PointJoint| {
+            let member = &tree.members[body];
+            Ball::new(joint, member.is_below, is_coupled(&tree.neighbours[body]), &from(member))
         };
-        let is_like = |(one, (member, neighbours)): (&Node, (&Member, &Vec<_>))| {
-            let is_ball = match (&one.ball, of_points(member, neighbours)) {
-                (Some(ball), Some(joint)) => ball.is_like(&joint, member.is_below),
+        let node = |(body, member): (usize, &Member)| Node {
+            ball: of_points(body).map(|joint| ball(body, joint)),
+            ..Node::new(rows(member.joint), member.parent.is_some(), &tree.neighbours[body])
+        };
+        let is_like = |(one, (body, member)): (&Node, (usize, &Member))| {
+            let is_ball = match (&one.ball, of_points(body)) {
+                (Some(ball), Some(joint)) => ball.is_like(&joint, member.is_below, &from(member)),
                 (ball, joint) => ball.is_none() && joint.is_none(),
             };
-            is_ball && one.is_like(rows(member.joint), member.parent.is_some(), neighbours)
+            is_ball && one.is_like(rows(member.joint), member.parent.is_some(), &tree.neighbours[body])
         };
-        let members = || tree.members.iter().zip(&tree.neighbours);
+        let members = || tree.members.iter().enumerate();
         let bodies = |joint: usize| [Some(joints[joint].below), joints[joint].above];
         let fits = self.nodes.len() == all[0]
             && self.loops.len() == all[1]
@@ -149,6 +164,19 @@ impl Equations {
         }
     }
 
+    /// Sets the places after these half increments, and the turns by the unknowns; sets the shifts of bodies on ball joints.
+    pub(super) fn set_next(
+        &mut self,
+        tree: &Tree,
+        places: &[Place],
+        half: &mut [Vector6<f64>],
+        (next, turns): (&mut [Place], &mut [Matrix3<f64>]),
+    ) {
+        let points = &mut self.unknowns.pairs;
+        points.resize(tree.members.len(), [[0.0; 4]; 2]);
+        on_registers(Increments { tree, nodes: &self.nodes, places, half, next, turns, points });
+    }
+
     /// Sets `E` at these places.
     pub(super) fn set_before(&mut self, joints: &[Joint], tree: &Tree, places: &[Place]) {
         on_registers(BallSlopes { tree, nodes: &mut self.nodes, places, turns: None });
@@ -186,19 +214,20 @@ impl Equations {
         factorise(tree, &mut self.nodes, &mut self.loops, &mut self.unknowns.pairs);
     }
 
-    /// Solves for these residuals of the bodies and gaps of the joints; returns the result of [`solve`].
+    /// Solves for these residuals of the bodies and gaps of the joints, by their numbers and by whether the places of the bodies
+    /// hold the joint's points; returns the result of [`solve`].
     pub(super) fn solve(
         &mut self,
         tree: &Tree,
         residuals: &[Vector6<f64>],
-        gap: impl Fn(usize) -> Vector6<f64>,
+        gap: impl Fn(usize, bool) -> Vector6<f64>,
     ) -> Vector2<f64> {
         self.unknowns.bodies.copy_from_slice(residuals);
-        for (unknown, member) in self.unknowns.joints.iter_mut().zip(&tree.members) {
-            *unknown = member.joint.map_or_else(Vector6::zeros, &gap);
+        for ((unknown, member), node) in self.unknowns.joints.iter_mut().zip(&tree.members).zip(&self.nodes) {
+            *unknown = member.joint.map_or_else(Vector6::zeros, |joint| gap(joint, node.ball.is_some()));
         }
         for (unknown, &joint) in self.unknowns.loops.iter_mut().zip(&tree.loops) {
-            *unknown = gap(joint);
+            *unknown = gap(joint, false);
         }
         solve(tree, &self.nodes, &self.loops, &mut self.unknowns)
     }
@@ -236,15 +265,14 @@ impl Equations {
     }
 
     /// The joint with the widest gap; `lengths` are the bodies' radii of gyration, m.
-    pub(super) fn widest_gap(&self, joints: &[Joint], tree: &Tree, places: &[Place], lengths: &[f64]) -> Widest {
+    pub(super) fn widest_gap(joints: &[Joint], places: &[Place], lengths: &[f64]) -> Widest {
         let shift = |body: usize| lengths[body].max(places[body].position.norm());
-        self.widest(tree, 1.0, shift, |joint, _| gap(&joints[joint], places))
+        Self::widest((joints, places), 1.0, shift, |joint, _| gap(&joints[joint], places))
     }
 
     /// The joint that these velocities open fastest, by `E y`; turns slower than `least`, rad/s, count as zero.
     pub(super) fn widest_parting(
-        &self,
-        tree: &Tree,
+        at: (&[Joint], &[Place]),
         velocities: &[Vector6<f64>],
         lengths: &[f64],
         least: f64,
@@ -252,8 +280,8 @@ impl Equations {
         let largest = |of: fn(&Vector6<f64>) -> f64| velocities.iter().map(of).fold(0.0, f64::max);
         let turn = largest(|velocity| parts(velocity).0.norm()).max(least);
         let speed = largest(|velocity| parts(velocity).1.norm());
-        self.widest(
-            tree,
+        Self::widest(
+            at,
             turn,
             |body| speed.max(lengths[body] * turn),
             |_, ends| {
@@ -264,25 +292,24 @@ impl Equations {
 
     /// The widest gap among these values of the functions, each relative to the size of its own terms.
     fn widest(
-        &self,
-        tree: &Tree,
+        (joints, places): (&[Joint], &[Place]),
         turn: f64,
         shift: impl Fn(usize) -> f64,
         values: impl Fn(usize, &[(usize, &Ends)]) -> Vector6<f64>,
     ) -> Widest {
         let mut widest = Widest { joint: 0, by: 0.0, relative: 0.0 };
-        let mut compare = |joint: usize, bodies: [Option<usize>; 2], both: &[Ends; 2]| {
-            let [own, other] = [0, 1].map(|side| bodies[side].map(|body| (body, &both[side])));
+        for (joint, joined) in joints.iter().enumerate() {
+            let (mut above, mut below) = (Ends::ZERO, Ends::ZERO);
+            let at = [place_of(places, joined.above), &places[joined.below]];
+            let turns = at.map(|place| Some(&place.attitude));
+            joined.functions.slopes(at, turns, [&mut above.before, &mut below.before]);
+            let (own, other) = ((joined.below, &below), joined.above.map(|body| (body, &above)));
             let of = |ends: &[(usize, &Ends)]| {
                 let sizes =
                     ends.iter().fold(Vector6::<f64>::zeros(), |sum, &(body, ends)| sum + ends.sizes(turn, shift(body)));
                 (values(joint, ends), sizes)
             };
-            let (values, sizes) = match [own.or(other), own.and(other)] {
-                [Some(one), Some(other)] => of(&[one, other]),
-                [Some(one), None] => of(&[one]),
-                _ => return,
-            };
+            let (values, sizes) = other.map_or_else(|| of(&[own]), |other| of(&[own, other]));
             for (value, size) in values.iter().zip(&sizes) {
                 let relative = if *value == 0.0 { 0.0 } else { value.abs() / size };
                 // A NaN counts as the widest gap.
@@ -290,14 +317,6 @@ impl Equations {
                     widest = Widest { joint, by: values.norm(), relative };
                 }
             }
-        };
-        for (k, (node, member)) in self.nodes.iter().zip(&tree.members).enumerate() {
-            if let Some(joint) = member.joint {
-                compare(joint, [Some(k), member.parent], &node.ends());
-            }
-        }
-        for (closing, &joint) in self.loops.iter().zip(&tree.loops) {
-            compare(joint, closing.bodies, &closing.ends);
         }
         widest
     }

@@ -86,6 +86,20 @@ impl Tree {
         Ok(tree)
     }
 
+    /// The joint of a body towards the root if it holds points, and if no term couples the body with a later one but the parent.
+    pub(super) fn of_points(&self, joints: &[Joint], body: usize) -> Option<PointJoint> {
+        let (member, neighbours) = (&self.members[body], &self.neighbours[body]);
+        let is_parent = |neighbour: &Neighbour| Some(neighbour.body) == member.parent;
+        let is_alone = neighbours.iter().all(|neighbour| is_parent(neighbour) || !neighbour.is_coupled);
+        member.joint.and_then(|joint| joints[joint].of_points).filter(|_| is_alone && neighbours.len() < 2)
+    }
+
+    /// Whether all joints hold points of bodies in trees, and nothing else, so that their multipliers are always unique.
+    pub(super) fn are_balls(&self, joints: &[Joint]) -> bool {
+        let is_ball = |body| self.of_points(joints, body).is_some_and(|joint| joint.count == 0);
+        self.loops.is_empty() && (0..self.members.len()).all(|body| self.members[body].joint.is_none() || is_ball(body))
+    }
+
     /// The trees of these bodies without joints.
     pub(super) fn without_joints(&self) -> Self {
         Self::planted(&[], self.members.len(), self.couplings.clone())

@@ -82,6 +82,11 @@ fn place(body: &Body) -> Place {
     Place { attitude: *body.0.as_matrix(), position: body.1.translation() }
 }
 
+/// The body at a place.
+fn body_at_place(place: &Place) -> Body {
+    (SO3::from_matrix_unchecked(place.attitude), R3::from(place.position))
+}
+
 /// The place of a body, or of space.
 fn place_of(places: &[Place], body: Option<usize>) -> &Place {
     body.map_or(&Place::SPACE, |body| &places[body])

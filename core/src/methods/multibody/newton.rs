@@ -2,19 +2,15 @@
 
 use core::f64::consts::FRAC_PI_2;
 
-use nalgebra::{Matrix3, Vector2, Vector6};
+use nalgebra::{Vector2, Vector6};
 
 roots!();
 
-use super::constraint::Place;
-use super::equations::gap;
+use super::equations::held_gap;
 use super::parts;
-use super::square::{shift_of, stored, three, turn_of};
 use super::stepper::MultibodyStepper;
 use super::workspace::Workspace;
 use crate::error::StepError;
-use crate::groups::{CayleyRetraction, Retraction, SO3};
-use crate::numbers::{Columns, OnRegisters, Register, on_registers, vector};
 use crate::solving::{Curvature, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS};
 
 /// The relative rounding error of an update, by places and by opposed forces.
@@ -44,35 +40,6 @@ const CONTINUED: f64 = 1e-6;
 fn squares(of: &Vector6<f64>) -> Vector2<f64> {
     let (turn, shift) = parts(of);
     Vector2::new(turn.norm_squared(), shift.norm_squared())
-}
-
-/// The places after increments, to the bit, and the turns in the axes of space by the unknowns, `½ R T` with the tangent
-/// `T = 2 (I + ŷ)/(1 + |y|²)` of the Cayley map.
-struct Increments<'a> {
-    places: &'a [Place],
-    half: &'a [Vector6<f64>],
-    next: &'a mut [Place],
-    turns: &'a mut [Matrix3<f64>],
-}
-
-impl OnRegisters for Increments<'_> {
-    type Output = ();
-
-    #[hot]
-    fn run<R: Register>(self, zero: R) {
-        let Self { places, half, next, turns } = self;
-        for (((place, half), next), turn) in places.iter().zip(half).zip(next).zip(turns) {
-            let y = vector(turn_of(zero, half));
-            let increment = <CayleyRetraction as Retraction<SO3>>::increment_of_half(&y);
-            let attitude = stored(zero, &place.attitude);
-            next.attitude.data.0 = three(attitude + attitude * stored(zero, &increment));
-            let [a, b, c] = attitude.0;
-            let (u, v, w) = (zero.of([y.x; 4]), zero.of([y.y; 4]), zero.of([y.z; 4]));
-            let turned = Columns([a + b * w - c * v, b + c * u - a * w, c + a * v - b * u]);
-            turn.data.0 = three(turned.scaled(zero.of([1.0 / (1.0 + y.norm_squared()); 4])));
-            next.position = place.position + vector(shift_of(zero, half)) * 2.0;
-        }
-    }
 }
 
 /// The momentum equations of a step from the workspace's `now` with its `a`, and the constraints at its end.
@@ -105,18 +72,11 @@ impl<'a> Problem<'a> {
         Self { stepper, work, weight: 1.0 / (length * length), extent: 1.0 + extent * extent, met: None }
     }
 
-    /// Sets the places after these increments, and the turns by the unknowns.
-    fn set_next(&mut self) {
-        let Workspace { places, half, next_places: next, turns, .. } = &mut *self.work;
-        on_registers(Increments { places, half, next, turns });
-    }
-
     /// One Newton iteration.
     fn newton(&mut self, longest: f64) -> Update {
         let (stepper, work) = (self.stepper, &mut *self.work);
+        work.set_next(&stepper.tree);
         stepper.set_newton(&work.now, &work.a, &work.half, &mut work.coefficients);
-        self.set_next();
-        let (stepper, work) = (self.stepper, &mut *self.work);
         // Gaps are halved: the unknowns are half the coordinates, so a shift is twice its unknown.
         work.equations.set_after(stepper.joints(), &stepper.tree, &work.next_places, &work.turns);
         work.equations.factorise(&stepper.tree, &work.coefficients);
@@ -127,8 +87,8 @@ impl<'a> Problem<'a> {
     /// One simplified iteration, with the last Jacobian.
     fn simplified(&mut self) -> Update {
         let (stepper, work) = (self.stepper, &mut *self.work);
+        work.set_next(&stepper.tree);
         stepper.set_residuals(&work.now, &work.a, &work.half, &mut work.coefficients.vectors);
-        self.set_next();
         self.update(f64::INFINITY)
     }
 
@@ -137,8 +97,8 @@ impl<'a> Problem<'a> {
         let (stepper, weights) = (self.stepper, self.weights());
         let Workspace { equations, coefficients, next_places, half, .. } = &mut *self.work;
         let joints = stepper.joints();
-        let opposed =
-            equations.solve(&stepper.tree, &coefficients.vectors, |joint| gap(&joints[joint], next_places) * 0.5);
+        let half_gap = |joint: usize, is_held: bool| held_gap(&joints[joint], next_places, is_held) * 0.5;
+        let opposed = equations.solve(&stepper.tree, &coefficients.vectors, half_gap);
         let (mut update, mut largest, mut size) = (0.0, 0.0_f64, 0.0);
         for part in &equations.unknowns.bodies {
             update += squares(part).dot(&weights);

@@ -64,11 +64,6 @@ impl Node {
         Self { matrix, determinant: 1.0, ends, rows, has_parent, blocks, ball, pivot: 1.0, of_joint: 1.0, x, inverse }
     }
 
-    /// The maps `E` and `C` of the joint towards the root.
-    pub(super) fn ends(&self) -> [Ends; 2] {
-        self.ball.as_ref().map_or(*self.ends, Ball::ends)
-    }
-
     /// Whether these are the equations of a body with such a joint and such neighbours: what isn't overwritten is the
     /// same.
     pub(super) fn is_like(&self, rows: usize, has_parent: bool, neighbours: &[Neighbour]) -> bool {

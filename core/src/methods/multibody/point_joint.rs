@@ -19,8 +19,14 @@ pub(super) struct PointJoint {
 impl PointJoint {
     /// The functions at these places.
     pub(super) fn gap(&self, above: &Place, below: &Place) -> Vector6<f64> {
-        let s = below.of(&self.points[1]) - above.of(&self.points[0]);
-        let mut gap = Vector6::new(s.x, s.y, s.z, 0.0, 0.0, 0.0);
+        let mut gap = self.cosines(above, below);
+        gap.fixed_rows_mut::<3>(0).copy_from(&(below.of(&self.points[1]) - above.of(&self.points[0])));
+        gap
+    }
+
+    /// The functions of attitudes at these places, after zeros.
+    pub(super) fn cosines(&self, above: &Place, below: &Place) -> Vector6<f64> {
+        let mut gap = Vector6::zeros();
         for (value, [e, n]) in gap.as_mut_slice()[3..].iter_mut().zip(&self.cosines[..self.count]) {
             *value = (above.attitude * e).dot(&(below.attitude * n));
         }

@@ -29,7 +29,8 @@ impl MultibodyStepper {
             before.extend_from_slice(state);
             let mut iterations = 0;
             let made = (0..steps).try_for_each(|step| {
-                iterations += u64::from(self.step_in(state, work, None, step > 0)?.iterations);
+                let ends = [step == 0, step + 1 == steps];
+                iterations += u64::from(self.step_of_run(state, work, None, ends)?.iterations);
                 Ok(())
             });
             if made.is_err() {
@@ -47,7 +48,7 @@ impl MultibodyStepper {
     /// [`StepError`] that names a body or a joint, see the type's contract.
     pub fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
         self.check(state)?;
-        with_workspace(|work| self.step_in(state, work, None, false))
+        with_workspace(|work| self.step_in(state, work, None))
     }
 }
 

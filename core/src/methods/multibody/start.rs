@@ -117,7 +117,7 @@ impl MultibodyStepper {
     fn check_start(&self, bodies: &[Body], momenta: &[Vector6<f64>]) -> Result<(), SetupError> {
         let places: Vec<_> = bodies.iter().map(place).collect();
         let equations = self.of_velocities(bodies, &places);
-        let Widest { joint, by, relative } = equations.widest_gap(self.joints(), &self.tree, &places, &self.lengths);
+        let Widest { joint, by, relative } = Equations::widest_gap(self.joints(), &places, &self.lengths);
         // A NaN fails this test.
         let is_closed = relative <= PRINTED;
         if !is_closed {
@@ -126,7 +126,8 @@ impl MultibodyStepper {
         self.check_redundance(&equations)?;
         let velocities = self.velocities_of(bodies, momenta);
         let least = if self.h == 0.0 { 0.0 } else { AT_REST / (PRINTED * self.h.abs()) };
-        let Widest { joint, by, relative } = equations.widest_parting(&self.tree, &velocities, &self.lengths, least);
+        let Widest { joint, by, relative } =
+            Equations::widest_parting((self.joints(), &places), &velocities, &self.lengths, least);
         if relative <= PRINTED { Ok(()) } else { Err(SetupError::OffVelocity { joint, by }) }
     }
 
@@ -140,7 +141,7 @@ impl MultibodyStepper {
         for iteration in 0..MAX_DAMPED_ITERATIONS {
             let places: Vec<_> = bodies.iter().map(place).collect();
             let mut equations = self.of_velocities(&bodies, &places);
-            let Widest { relative, .. } = equations.widest_gap(self.joints(), &self.tree, &places, &self.lengths);
+            let Widest { relative, .. } = Equations::widest_gap(self.joints(), &places, &self.lengths);
             match self.check_redundance(&equations) {
                 Err(_) if iteration > 0 && relative > PRINTED => break,
                 checked => checked?,
@@ -151,7 +152,7 @@ impl MultibodyStepper {
             let widest = self.largest_gap(&places);
             nearest = if widest.1 < nearest.1 { widest } else { nearest };
             last = relative;
-            equations.solve(&self.tree, &still, |joint| gap(&self.joints()[joint], &places));
+            equations.solve(&self.tree, &still, |joint, _| gap(&self.joints()[joint], &places));
             let updates = &equations.unknowns.bodies;
             let largest = updates.iter().fold(0.0_f64, |most, update| most.max(parts(update).0.norm()));
             let part = if largest > LONGEST { LONGEST / largest } else { 1.0 };

@@ -10,7 +10,7 @@ use super::state::body_at;
 use super::stepper::MultibodyStepper;
 use super::terms::space;
 use super::workspace::{Workspace, with_workspace};
-use super::{Body, place};
+use super::{Body, body_at_place, place};
 use crate::error::StepError;
 use crate::groups::{CayleyRetraction, LieGroup as _, Retraction};
 use crate::motion::StepReport;
@@ -26,14 +26,24 @@ fn is_finite(vectors: &[Vector6<f64>]) -> bool {
 }
 
 impl MultibodyStepper {
-    /// Makes one step of a slice that is a state; on an error it is unchanged. Adds the joints' forces. Slopes at the state
-    /// are known if the workspace has just made the step that ends there, with nothing in between.
+    /// Makes one step of a slice that is a state; on an error it is unchanged. Adds the joints' forces.
     pub(super) fn step_in(
         &self,
         state: &mut [f64],
         work: &mut Workspace,
         forces: Option<&mut [Vector6<f64>]>,
-        are_slopes_known: bool,
+    ) -> Result<StepReport, StepError> {
+        self.step_of_run(state, work, forces, [true; 2])
+    }
+
+    /// Makes one step of a run. Between the first and the last the bodies and their momenta are those of the workspace, and only the
+    /// memory for the guess is in the slice, which is a state after the last. On an error it isn't.
+    pub(super) fn step_of_run(
+        &self,
+        state: &mut [f64],
+        work: &mut Workspace,
+        forces: Option<&mut [Vector6<f64>]>,
+        [is_first, is_last]: [bool; 2],
     ) -> Result<StepReport, StepError> {
         let (offsets, steps) = (self.offsets, self.offsets.steps(state));
         if self.h == 0.0 {
@@ -43,14 +53,14 @@ impl MultibodyStepper {
         if let Some(stages) = &self.stages {
             return self.composed_step(stages, state, work, forces);
         }
-        if !are_slopes_known {
+        if is_first {
             work.fit(self.bodies(), self.tree.couplings.len());
             work.equations.fit(self.joints(), &self.tree);
         }
         let is_due = steps % STEPS_BETWEEN_CHECKS == 0.0;
-        self.load(state, work, is_due)?;
+        self.load(state, work, is_first, is_due)?;
         self.kick_before(work);
-        if is_due || !are_slopes_known {
+        if is_first || is_due || self.is_open {
             work.equations.set_before(self.joints(), &self.tree, &work.places);
         }
         let mut problem = Problem::new(self, work);
@@ -61,8 +71,16 @@ impl MultibodyStepper {
             work.equations.add_multipliers(&self.tree, impulse / self.h, forces);
         }
         self.push_forward(work, impulse);
-        // The Jacobian was checked along the iteration, but not at its end; the projection checks it there.
-        self.project(work).map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
+        if self.is_open {
+            // The multipliers of the next step take up what a projection would change.
+            for (momentum, change) in work.momenta.iter_mut().zip(&mut work.a) {
+                *momentum += core::mem::replace(change, Vector6::zeros());
+            }
+        }
+        if is_last || !self.is_open {
+            // The Jacobian was checked along the iteration, but not at its end; the projection checks it there.
+            self.project(work).map_err(|(joint, pivot)| StepError::SingularJoint { joint, pivot })?;
+        }
         self.check_left_out(&work.next_places)?;
         if let Some(forces) = &mut forces {
             work.equations.add_multipliers(&self.tree, -1.0 / self.h, forces);
@@ -70,23 +88,38 @@ impl MultibodyStepper {
         if !is_finite(&work.momenta) || !is_finite(&work.half) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
         }
-        offsets.write(state, &work.next, &work.momenta);
+        if is_last {
+            offsets.write(state, &work.next, &work.momenta);
+            if self.is_open {
+                offsets.write_unprojected(state, &work.changed);
+            }
+        }
         let is_near = |half: &Vector6<f64>| <CayleyRetraction as Retraction<Body>>::is_half_well_near_identity(half);
         offsets.follow(state, &work.half, !work.half.iter().all(is_near));
         offsets.set_steps(state, steps + 1.0);
         Ok(StepReport::of(iterations))
     }
 
-    /// Reads a state. Attitudes are projected onto the rotations if that is due: before the step, so that joints are
-    /// closed after it.
-    fn load(&self, state: &[f64], work: &mut Workspace, is_due: bool) -> Result<(), StepError> {
+    /// Reads a state, or takes that at the end of the last step of a run. Attitudes are projected onto the rotations if that is due:
+    /// before the step, so that joints are closed after it.
+    fn load(&self, state: &[f64], work: &mut Workspace, is_first: bool, is_due: bool) -> Result<(), StepError> {
+        if is_first {
+            for body in 0..self.bodies() {
+                work.now[body] = body_at(state, body);
+                work.places[body] = place(&work.now[body]);
+            }
+            for (momentum, entries) in work.momenta.iter_mut().zip(self.offsets.starting(state).chunks_exact(6)) {
+                momentum.copy_from_slice(entries);
+            }
+        } else {
+            core::mem::swap(&mut work.now, &mut work.next);
+            core::mem::swap(&mut work.places, &mut work.next_places);
+        }
         for body in 0..self.bodies() {
-            work.now[body] = body_at(state, body);
             if is_due && let Some((restored, _)) = work.now[body].restored(0.0) {
                 work.now[body] = restored;
+                work.places[body] = place(&restored);
             }
-            work.places[body] = place(&work.now[body]);
-            work.momenta[body] = self.offsets.momentum(state, body);
             work.half[body] = self.offsets.guess(state, body);
         }
         if is_finite(&work.momenta) { Ok(()) } else { Err(StepError::NonFinite { what: "momentum" }) }
@@ -109,10 +142,11 @@ impl MultibodyStepper {
 
     /// Moves the bodies by the solution, and their momenta, but for the projection.
     fn push_forward(&self, work: &mut Workspace, impulse: f64) {
+        work.set_next(&self.tree);
         work.equations.reactions(&self.tree, &mut work.reactions);
         for body in 0..self.bodies() {
             work.increments[body] = <CayleyRetraction as Retraction<Body>>::increment_of_half(&work.half[body]);
-            work.next[body] = work.now[body].advance(&work.increments[body]);
+            work.next[body] = body_at_place(&work.next_places[body]);
             work.reactions[body] *= impulse;
         }
         // The changes of the momenta are in the place of the right-hand sides.
@@ -144,7 +178,6 @@ impl MultibodyStepper {
     fn project(&self, work: &mut Workspace) -> Result<(), (usize, f64)> {
         let Workspace { next, next_places, momenta, a, coefficients, reactions, equations, changed, .. } = work;
         for body in 0..self.bodies() {
-            next_places[body] = place(&next[body]);
             changed[body] = momenta[body] + a[body];
         }
         self.set_impulses(equations, next, next_places, (changed, coefficients))?;
@@ -173,7 +206,7 @@ impl MultibodyStepper {
         if let Some(redundant) = equations.redundant(&self.tree) {
             return Err(redundant);
         }
-        equations.solve(&self.tree, &coefficients.vectors, |_| Vector6::zeros());
+        equations.solve(&self.tree, &coefficients.vectors, |_, _| Vector6::zeros());
         Ok(())
     }
 
@@ -196,7 +229,7 @@ impl MultibodyStepper {
             let impulses = || force.iter().map(|force| force * (self.h * 0.5));
             let made = self
                 .push_in(&mut next, work, impulses())
-                .and_then(|()| self.step_in(&mut next, work, None, false))
+                .and_then(|()| self.step_in(&mut next, work, None))
                 .and_then(|report| self.push_in(&mut next, work, impulses()).map(|()| report));
             if made.is_ok() {
                 state.copy_from_slice(&next);
@@ -231,6 +264,7 @@ impl MultibodyStepper {
         work.equations.fit(self.joints(), &self.tree);
         for (body, impulse) in impulses.enumerate() {
             work.next[body] = body_at(state, body);
+            work.next_places[body] = place(&work.next[body]);
             work.momenta[body] = self.offsets.momentum(state, body);
             work.a[body] = impulse;
         }

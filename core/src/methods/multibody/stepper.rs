@@ -37,7 +37,7 @@ use crate::motion::Layout;
 /// - Nothing is allocated after a thread's first step of a system of this size.
 ///
 /// A state has the attitudes of all bodies, each a rotation and a translation, then their momenta, the memory for the
-/// guess of the next increments, and the number of steps.
+/// guess of the next increments and of momenta before their projection, and the number of steps.
 ///
 /// # Source
 ///
@@ -59,6 +59,8 @@ pub struct MultibodyStepper {
     pub(super) free: Tree,
     /// The radius of gyration of each body, m, by which rotations are compared with translations.
     pub(super) lengths: Vec<f64>,
+    /// Whether all joints are balls in trees: then momenta are projected for who reads them, and no step needs it.
+    pub(super) is_open: bool,
     /// Whether a body has no velocity without its joints.
     pub(super) has_point_masses: bool,
     /// The stages of a composition.
@@ -131,6 +133,7 @@ impl MultibodyStepper {
         let ranges = (0..system.bodies).map(|body| place(body)..place(body + 1)).collect();
         let (layout, offsets, stages) = (layout(system.bodies, 1), Offsets::of(system.bodies, 1), None);
         let (lengths, has_point_masses) = (Vec::new(), false);
+        let is_open = tree.are_balls(&system.joints);
         let mut stepper = Self {
             h,
             system,
@@ -140,6 +143,7 @@ impl MultibodyStepper {
             couplings,
             free,
             lengths,
+            is_open,
             has_point_masses,
             stages,
             layout,
@@ -372,7 +376,8 @@ impl MultibodyStepper {
             return Ok(forces);
         }
         let mut state = state.to_vec();
-        with_workspace(|work| self.step_in(&mut state, work, Some(&mut forces), false))?;
+        self.offsets.start_from_momenta(&mut state, 0);
+        with_workspace(|work| self.step_in(&mut state, work, Some(&mut forces)))?;
         Ok(forces)
     }
 

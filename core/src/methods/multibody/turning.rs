@@ -11,7 +11,6 @@
 
 use nalgebra::{SMatrix, Vector3};
 
-use super::ends::Ends;
 use super::square::{Square, ZERO, loaded, matrix, stored};
 use crate::numbers::{Columns, Register, cross, padded};
 
@@ -45,14 +44,6 @@ impl Turning {
         let (across, x, inverse, by_turn, by_point) = (ZERO, ZERO, ZERO, ZERO, ZERO);
         let (pivot, determinant) = (1.0, 1.0);
         Self { rows, directions, before, after, across, x, inverse, by_turn, by_point, of_parent, pivot, determinant }
-    }
-
-    /// Adds the functions to the maps of a joint.
-    pub(super) fn add_to(&self, ends: &mut [Ends; 2]) {
-        for (side, ends) in ends.iter_mut().enumerate() {
-            ends.before.fixed_view_mut::<3, 3>(0, 3).copy_from(&matrix(&self.before[side]));
-            ends.after.fixed_view_mut::<3, 3>(0, 3).copy_from(&matrix(&self.after[side]));
-        }
     }
 }
 

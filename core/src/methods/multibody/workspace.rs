@@ -11,6 +11,7 @@ use nalgebra::{Matrix3, Vector6};
 use super::constraint::Place;
 use super::couplings::Coefficients;
 use super::equations::Equations;
+use super::graph::Tree;
 use super::{Body, Increment};
 
 /// The intermediate values of a step, of each body.
@@ -68,6 +69,12 @@ impl Workspace {
         }
         self.coefficients.fit(bodies, pairs);
         self.turns.resize(bodies, Matrix3::zeros());
+    }
+
+    /// Sets the places after the half increments.
+    pub(super) fn set_next(&mut self, tree: &Tree) {
+        let Self { places, half, next_places, turns, equations, .. } = self;
+        equations.set_next(tree, places, half, (next_places, turns));
     }
 }
 

@@ -26,7 +26,8 @@ use crate::mechanics::{
     DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, Term, constant_inertia,
 };
 use crate::motion::{
-    Cost, Motion, OwnStep, Plan, STEPS_BETWEEN_CHECKS, Steerable, Stepper, Summation, SumsOf, Variable, is_due,
+    Cost, Motion, OwnStep, Plan, PlanFacts, Runs, STEPS_BETWEEN_CHECKS, Steerable, Stepper, Summation, SumsOf,
+    Variable, is_due,
 };
 use crate::numbers::{Coordinates, Real, Vectors, count, largest_lane, real, reported};
 use nalgebra::{
@@ -355,8 +356,8 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Splitting<S, K> {
     }
 }
 
-impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for Splitting<S, K> {}
-impl<S: Effect, K: KineticFlow<Scalar<S>>> Variable for Splitting<S, K> {}
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Steerable<S> for Splitting<S, K> {}
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Variable<S> for Splitting<S, K> {}
 
 /// The length of a share.
 #[derive(Clone, Copy, Debug)]
@@ -395,8 +396,15 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
     /// short, is faster by more registers, too. For other bodies the widest registers are slower: the entries of an
     /// increment are packed and unpacked, and the next kick waits for that. Lanes in arrays are slower with the widest,
     /// too. `cargo bench -p liestep-lanes --bench vectors` compares all three.
-    const VECTORS: Vectors =
-        if <Scalar<S> as SimdValue>::LANES == 1 && K::OPERATIONS_OF_SPIN > 0 { Vectors::Eight } else { Vectors::Four };
+    const FACTS: PlanFacts = PlanFacts {
+        vectors: if <Scalar<S> as SimdValue>::LANES == 1 && K::OPERATIONS_OF_SPIN > 0 {
+            Vectors::Eight
+        } else {
+            Vectors::Four
+        },
+        runs: Runs::AsSteps,
+        ..PlanFacts::of::<S>()
+    };
 
     fn step_size(&self) -> Scalar<S> {
         self.h
@@ -407,8 +415,6 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
     }
 
     fn keep(&self, _: &S, _: &Motion<SO3<Scalar<S>>, S::Advected>) {}
-
-    const STEPS_BY_RUNS: bool = true;
 
     /// The last drift of a step and the first of the next are merged.
     #[hot]

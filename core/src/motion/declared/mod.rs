@@ -11,7 +11,7 @@ use crate::mechanics::{
     Effect, Group, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, pattern,
 };
 use crate::motion::increment::Increment;
-use crate::motion::plan::{Cost, Plan, Steerable, Variable};
+use crate::motion::plan::{Cost, Plan, PlanFacts, Runs, Steerable, Variable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, MotionOf, Summation, SumsOf, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
@@ -214,13 +214,13 @@ impl<S: Effect> OwnStep<S> {
     }
 }
 
-impl<S: Effect> Steerable for OwnStep<S> {}
-impl<S: Effect> Variable for OwnStep<S> {}
+impl<S: Effect> Steerable<S> for OwnStep<S> {}
+impl<S: Effect> Variable<S> for OwnStep<S> {}
 
 impl<S: Effect> Plan<S> for OwnStep<S> {
     type Kept = Memory<S>;
 
-    const RUNS_BY_STEPS: bool = true;
+    const FACTS: PlanFacts = PlanFacts { runs: Runs::BySteps, ..PlanFacts::of::<S>() };
 
     fn step_size(&self) -> Scalar<S> {
         self.h

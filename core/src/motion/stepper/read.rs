@@ -62,7 +62,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// order of the scheme, and doesn't drift.
     #[must_use]
     pub fn energy(&self, motion: &MotionOf<S>) -> Scalar<S> {
-        if const { P::HAS_OWN_INERTIA } {
+        if const { P::FACTS.has_own_inertia } {
             return self.plan.energy(&self.scene, motion);
         }
         energy(&self.scene, &motion.momentum, &motion.advected)

@@ -26,13 +26,13 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// identity, or if a value isn't finite. [`StepError::BeyondSolvable`] names the largest solvable step.
     #[hot]
     pub fn step(&self, state: &mut StateOf<S, P>) -> Result<StepReport, StepError> {
-        let made = if const { P::STEPS_BY_RUNS } {
+        let made = if const { P::FACTS.runs.are_steps() } {
             self.attempt(state, 1).map(StepReport::of_run)
         } else {
             dispatch(Step(self, state))
         };
         match made {
-            Err(error) if P::EXPLAINS => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
+            Err(error) if P::FACTS.explains => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
             made => made,
         }
     }
@@ -116,7 +116,12 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     ///
     /// \[MW01\], section 3.2.
     pub fn step_forced(&self, state: &mut StateOf<S, P>, force: &Vector<S>) -> Result<StepReport, StepError> {
-        const { assert!(!P::VARIES || P::COUNTS_TIME, "a force changes the length that a density gives its step") }
+        const {
+            assert!(
+                !P::FACTS.varies || P::FACTS.counts_time,
+                "a force changes the length that a density gives its step"
+            );
+        }
         self.forced(state, force)
     }
 
@@ -171,7 +176,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// ```
     pub fn step_of(&self, state: &mut StateOf<S, P>, h: Scalar<S>) -> Result<StepReport, StepError>
     where
-        P: Variable,
+        P: Variable<S>,
     {
         if !is_finite(h) {
             return Err(StepError::NonFinite { what: "length of the step" });
@@ -221,7 +226,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     /// ```
     pub fn step_with(&self, state: &mut StateOf<S, P>, values: &S::Advected) -> Result<StepReport, StepError>
     where
-        P: Steerable,
+        P: Steerable<S>,
     {
         if !values.is_finite() {
             return Err(StepError::NonFinite { what: "value given to the step" });
@@ -247,7 +252,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     /// All wrappers of steps use one compiled copy of a step, that of a run if it is the same.
     #[inline(never)]
     fn step(&self, state: &mut Self::State) -> Result<StepReport, StepError> {
-        if const { P::STEPS_BY_RUNS || P::RUNS_BY_STEPS } {
+        if const { P::FACTS.runs.are_steps() || P::FACTS.runs.are_sequences() } {
             self.run_without_copy(state, 1, None).map(StepReport::of_run)
         } else {
             Stepper::step(self, state)
@@ -269,7 +274,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
         steps: u64,
         next: &mut NextSteps<'_, Group<S>, S::Advected>,
     ) -> Result<u64, StepError> {
-        if const { P::RUNS_BY_STEPS } {
+        if const { P::FACTS.runs.are_sequences() } {
             // A run stops at the same state as single steps, and no copy is needed.
             let elapsed = state.elapsed.sum;
             self.run_without_copy(state, steps, Some(&mut |motion, time| next(motion, time + elapsed)))
@@ -291,7 +296,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     }
 
     fn length(&self, state: &Self::State) -> Option<Scalar<S>> {
-        P::VARIES.then(|| self.plan.length(&self.scene, &state.motion, &state.kept, true))
+        P::FACTS.varies.then(|| self.plan.length(&self.scene, &state.motion, &state.kept, true))
     }
 
     fn cost(&self) -> Option<Cost> {
@@ -323,14 +328,14 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     }
 
     fn inertia(&self) -> Self::Inertia {
-        if const { P::HAS_OWN_INERTIA } { None } else { factored_inertia(&self.scene) }
+        if const { P::FACTS.has_own_inertia } { None } else { factored_inertia(&self.scene) }
     }
 
     fn write(&self, motion: &MotionOf<S>, inertia: &Self::Inertia, attitude: &mut [Scalar<S>], row: &mut [f64])
     where
         Scalar<S>: Into<f64>,
     {
-        let read = if const { P::HAS_OWN_INERTIA } {
+        let read = if const { P::FACTS.has_own_inertia } {
             (self.velocity(motion), self.energy(motion))
         } else {
             velocity_and_energy(&self.scene, inertia.as_ref(), &motion.momentum, &motion.advected)
@@ -344,7 +349,7 @@ struct Step<'a, S: Effect, P: Plan<S>>(&'a Stepper<S, P>, &'a mut StateOf<S, P>)
 
 impl<S: Effect, P: Plan<S>> Kernel for Step<'_, S, P> {
     type Output = Result<StepReport, StepError>;
-    const VECTORS: Vectors = P::VECTORS;
+    const VECTORS: Vectors = P::FACTS.vectors;
     const IS_IN_LANES: bool = <Scalar<S> as nalgebra::SimdValue>::LANES > 1;
 
     #[hot]

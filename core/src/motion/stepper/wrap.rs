@@ -45,7 +45,10 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
                 S::FACTS.is_self_adjoint,
                 "a step of -h undoes one of h only where l_d(F, w, h) = -l_d(F^-1, F^-1 w, -h)"
             );
-            assert!(!P::COUNTS_TIME, "counted steps go on counting: reverse the clock, and the function of the values");
+            assert!(
+                !P::FACTS.counts_time,
+                "counted steps go on counting: reverse the clock, and the function of the values"
+            );
         }
         let plan = self.plan.refolded(&self.scene, -self.step_size())?;
         Ok(Self { scene: self.scene.clone(), plan })

@@ -67,8 +67,11 @@ pub fn readings_without(
         });
         Displacements(each.collect())
     });
-    let attempt =
-        |lets, opens_matrices| Lowering { opens_matrices, ..Lowering::new(symbols.clone(), &names, lets) }.whole(tree);
+    let displaced: Vec<SymbolId> = displacements.iter().flat_map(|all| all.0.iter().flatten().copied()).collect();
+    let attempt = |lets, opens_matrices| {
+        let lowering = Lowering::new(symbols.clone(), &names, lets);
+        Lowering { opens_matrices, displaced: displaced.clone(), ..lowering }.whole(tree)
+    };
     let lowered = |(symbols, expression, lets): (Symbols, Expression, Vec<Let>)| {
         let (group, increments) = (declaration.group.clone(), increments.clone());
         let (advected, names) = (advected.clone(), names.clone());
@@ -89,8 +92,8 @@ pub fn readings_without(
         Reading { declared, names }
     };
     let multiplied_out = attempt(None, false);
-    // The work of a force is always multiplied out: it is linear in the displacements, and short.
-    let may_close = displacements.is_none() && (multiplied_out.is_err() || has_let(tree));
+    // The work of a force is linear in the displacements, and mostly short enough to be multiplied out.
+    let may_close = multiplied_out.is_err() || displacements.is_none() && has_let(tree);
     let closed = may_close.then(|| attempt(Some(Vec::new()), false));
     // All but `F` cancels in `tr((F − I) J_d (F − I)ᵀ)`, while the pace is best left closed.
     let opened = declaration.energy.map(|_| attempt(Some(Vec::new()), true));
@@ -254,11 +257,14 @@ struct Lowering<'a> {
     opens_matrices: bool,
     /// The symbol of the velocity's matrix in a continuous Lagrangian.
     velocity_matrix: Option<SymbolId>,
+    /// The displacements of virtual work, which stay out of closed `let`s: the force is what they are multiplied with.
+    displaced: Vec<SymbolId>,
 }
 
 impl<'a> Lowering<'a> {
     fn new(symbols: Symbols, names: &'a BTreeMap<Name, SymbolId>, lets: Option<Vec<Let>>) -> Self {
-        Self { symbols, names, known: BTreeMap::new(), lets, opens_matrices: false, velocity_matrix: None }
+        let known = BTreeMap::new();
+        Self { symbols, names, known, lets, opens_matrices: false, velocity_matrix: None, displaced: Vec::new() }
     }
 
     fn whole(mut self, tree: &Rc<Tree>) -> Result<(Symbols, Expression, Vec<Let>), Failure> {
@@ -276,7 +282,8 @@ impl<'a> Lowering<'a> {
     /// The expression of a `let`, or the symbol that stands for it.
     fn bound(&mut self, name: &str, value: Expression) -> Expression {
         let is_small = value.len() <= 1 && value.size() <= 2;
-        let Some(lets) = self.lets.as_mut().filter(|_| !is_small) else { return value };
+        let stays_open = is_small || self.displaced.iter().any(|displacement| value.contains(*displacement));
+        let Some(lets) = self.lets.as_mut().filter(|_| !stays_open) else { return value };
         // Equal and opposite values share one symbol, and so one multiplier.
         let opposite = value.clone().scaled(-Rational::ONE);
         if let Some(known) = lets.iter().find(|one| one.value == value || one.value == opposite) {

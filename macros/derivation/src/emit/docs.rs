@@ -26,7 +26,7 @@ impl Equation {
     }
 }
 
-/// The closed `let`s and their multipliers, which occur in the equations.
+/// The closed `let`s and their multipliers, which occur in the equations; those of a force have none.
 pub(super) fn lets(derived: &Derivation) -> String {
     let symbols = &derived.symbols;
     let name = |id| &symbols.get(id).name;
@@ -36,12 +36,14 @@ pub(super) fn lets(derived: &Derivation) -> String {
     // A constant with many digits has its digits as its name.
     let named = || derived.closed.iter().filter(|one| name(one.symbol).parse::<f64>().is_err());
     let values = named().map(|one| format!("\n    {} = {}", name(one.symbol), text(&one.value, symbols)));
-    let pairings = named().rev().map(|one| {
+    let has_multipliers = derived.closed.iter().any(|one| !one.pairing.is_zero());
+    let pairings = named().rev().filter(|_| has_multipliers).map(|one| {
         let (multiplier, direction) = (name(one.multiplier), name(one.direction));
         format!("\n    ⟨{multiplier}, {direction}⟩ = {}", text(&one.pairing, symbols))
     });
     let (values, pairings) = (values.collect::<String>(), pairings.collect::<String>());
-    format!("lets, kept closed{values}\nmultipliers, λ_v = ∂l_d/∂v{pairings}\n")
+    let multipliers = if has_multipliers { "\nmultipliers, λ_v = ∂l_d/∂v" } else { "" };
+    format!("lets, kept closed{values}{multipliers}{pairings}\n")
 }
 
 /// The equations of a declaration, in the order of the thesis.

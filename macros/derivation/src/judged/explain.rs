@@ -11,6 +11,7 @@ use crate::declared::errors::Errors;
 use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Role, Tree};
 use crate::mathematics::chart::Chart;
 use crate::mathematics::derive::{ForceError, LimitError, Refusal};
+use crate::mathematics::group::Group;
 
 /// Reports the terms that can't be intended; `None` if there are any.
 pub fn terms(declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
@@ -167,6 +168,8 @@ fn explain_force(error: ForceError, declaration: &Declaration, errors: &mut Erro
 pub(super) fn kinetic_part(found: &KineticPart, declaration: &Declaration, errors: &mut Errors) -> Option<()> {
     let message = match found {
         KineticPart::Regular => return Some(()),
+        // The inertia of a rotor between two bodies is added to their own, and one of all bodies is checked at the start.
+        KineticPart::Singular(_) if is_of_two_bodies(declaration) => return Some(()),
         KineticPart::NotStationary(asymmetric) => not_stationary(asymmetric, declaration),
         KineticPart::NotSmooth => {
             "the kinetic part has no second derivative at `F = I`, where a step is small: write it \
@@ -184,6 +187,14 @@ pub(super) fn kinetic_part(found: &KineticPart, declaration: &Declaration, error
     };
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
     None
+}
+
+/// Whether the group is that of one body twice.
+fn is_of_two_bodies(declaration: &Declaration) -> bool {
+    let factors = declaration.group.factors();
+    let (first, second) = factors.split_at(factors.len() / 2);
+    let is_same = |(one, other): (&Group, &Group)| one.generators == other.generators && one.is_added == other.is_added;
+    first.len() == second.len() && first.iter().zip(second).all(is_same)
 }
 
 /// Reports a continuous kinetic part that no values of the parameters make regular at rest.

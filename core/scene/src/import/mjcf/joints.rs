@@ -39,27 +39,23 @@ pub(super) fn sequence<'a, 'd>(
         reader.robot.joints.push(fixed);
         return Ok(());
     }
-    for (node, around) in elements {
-        let element = reader.classes.of(*node, around.class)?;
-        if Reader::number(&element, "armature")?.is_some_and(|armature| armature != 0.0) {
-            *reader.left_out.entry("armature").or_default() += 1;
-        }
-    }
     if joints.len() > 1
         && let Some((connection, at)) = together(&joints)
     {
-        let own = |joint: &Joint| (joint.damping, joint.friction, joint.stiffness, joint.limits.is_some());
-        let has = joints.iter().map(own).any(|(damping, friction, stiffness, has_limits)| {
-            damping > 0.0 || friction > 0.0 || stiffness > 0.0 || has_limits
-        });
+        let own = |joint: &Joint| {
+            let Joint { damping, friction, armature, stiffness, limits, .. } = joint;
+            limits.is_some() || [damping, friction, armature, stiffness].into_iter().any(|&term| term > 0.0)
+        };
+        let has = joints.iter().any(own);
         let first = joints.swap_remove(0);
         let equal = joints.iter().all(|joint| joint.damping.to_bits() == first.damping.to_bits());
         let damping = if equal && connection == Connection::Ball { first.damping } else { 0.0 };
         if has {
             let count = joints.len() + 1;
             let but = if damping > 0.0 { ", and their damping is one" } else { "" };
-            let remark =
-                format!("body {name}: its {count} joints are one, without their springs, friction and limits{but}");
+            let remark = format!(
+                "body {name}: its {count} joints are one, without their springs, friction, rotors and limits{but}"
+            );
             reader.robot.remarks.push(remark);
         }
         let plain = Joint::new((name.to_owned(), first.place), [String::new(), String::new()], (origin, connection));
@@ -120,6 +116,7 @@ fn one<'a, 'd>(reader: &Reader<'a, 'd>, node: &Node<'a, 'd>, around: &Around<'a>
         at,
         damping: number("damping")?,
         friction: number("frictionloss")?,
+        armature: number("armature")?,
         limits: range.filter(|_| is_limited),
         stiffness: number("stiffness")?,
         rest: number("springref")? * unit - zero,

@@ -16,8 +16,8 @@ use super::{KineticFlow, Length, Splitting, Stages, has_force_gradient, share_of
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, SO3};
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, Scalar, SceneVisitor, Term};
-use crate::motion::{Cost, Motion, OwnStep, Plan, Steerable, Stepper, Summation};
-use crate::numbers::{Coordinates, Real, Vectors, real};
+use crate::motion::{Cost, Motion, OwnStep, Plan, PlanFacts, Steerable, Stepper, Summation};
+use crate::numbers::{Coordinates, Real, real};
 use nalgebra::{SimdBool as _, SimdComplexField as _, SimdPartialOrd as _, Vector3};
 
 /// The plan of [`Stepper::processed`](crate::Stepper::processed): a kinetic-potential splitting whose steps are made inside of a processor, so that three drifts give order 6.
@@ -188,12 +188,18 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> ProcessedSplitting<S, K> {
 }
 
 /// A step with prescribed parameters applies the processor and its inverse with them.
-impl<S: Effect, K: KineticFlow<Scalar<S>>> Steerable for ProcessedSplitting<S, K> {}
+impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Steerable<S> for ProcessedSplitting<S, K> {
+    /// The kernel's motion was computed with the old values, so it is discarded.
+    fn see(&self, motion: &mut Motion<SO3<Scalar<S>>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
+        *kept = Inside(None);
+        motion.advected = advected;
+    }
+}
 
 impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S, K> {
     type Kept = Inside<Scalar<S>, S::Advected>;
 
-    const VECTORS: Vectors = <Splitting<S, K> as Plan<S>>::VECTORS;
+    const FACTS: PlanFacts = <Splitting<S, K> as Plan<S>>::FACTS;
 
     fn step_size(&self) -> Scalar<S> {
         self.kernel.h
@@ -216,8 +222,6 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
             is_there.all() || !is_there.any()
         })
     }
-
-    const STEPS_BY_RUNS: bool = true;
 
     #[hot]
     fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
@@ -262,12 +266,6 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
             motion.push(impulse);
             kept.0 = None;
         }
-    }
-
-    /// The kernel's motion was computed with the old values, so it is discarded.
-    fn see(&self, motion: &mut Motion<SO3<Scalar<S>>, S::Advected>, kept: &mut Self::Kept, advected: S::Advected) {
-        *kept = Inside(None);
-        motion.advected = advected;
     }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {

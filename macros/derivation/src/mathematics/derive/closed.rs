@@ -10,6 +10,8 @@
 //! the first variation of `l_d` is that of `L` with `v` and `λ` fixed, so that all momentum maps follow from the usual
 //! rules. This is differentiation in the reverse mode: a gradient costs a few evaluations. The second variation goes
 //! through `v` and `λ` as well, in the forward mode.
+//!
+//! Virtual work isn't differentiated to give a force: its `let`s have no multipliers.
 
 use super::Context;
 use super::transport::in_small_increment;
@@ -41,8 +43,8 @@ pub struct ClosedLet {
     pub multiplier_tangent: (SymbolId, Expression),
 }
 
-/// The symbols that each `let` adds, and the Lagrangian `L` with multipliers.
-pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols) -> (Vec<ClosedLet>, Expression) {
+/// The symbols that each `let` adds, with multipliers of zero.
+pub(super) fn without_multipliers(lets: &[Let], symbols: &mut Symbols) -> Vec<ClosedLet> {
     let mut closed = Vec::new();
     for Let { symbol, value } in lets {
         let (name, shape, stage) = {
@@ -66,6 +68,12 @@ pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols)
             multiplier_tangent: (multiplier_tangent, zero()),
         });
     }
+    closed
+}
+
+/// The symbols that each `let` adds, and the Lagrangian `L` with multipliers.
+pub(super) fn multipliers(lets: &[Let], l_d: &Expression, symbols: &mut Symbols) -> (Vec<ClosedLet>, Expression) {
+    let mut closed = without_multipliers(lets, symbols);
     let mut lagrangian = l_d.clone();
     for one in closed.iter_mut().rev() {
         let along = Variations::from([(one.symbol, Expression::symbol(one.direction, symbols))]);

@@ -11,7 +11,8 @@
 //! so it has the stages of any effect, and a part of the Newton Jacobian.
 
 use super::{
-    Context, DeclaredFunction, Derivation, Limit, cayley, directions, momentum_equation, self_adjoint, transport,
+    Context, DeclaredFunction, Derivation, Limit, cayley, closed, directions, momentum_equation, self_adjoint,
+    transport,
 };
 use crate::mathematics::symbolic::{Expression, Rational, SymbolId};
 
@@ -33,6 +34,7 @@ pub(super) fn force(
 ) -> Result<Derivation, ForceError> {
     let mut symbols = declared.symbols.clone();
     let directions = directions(declared, &mut symbols);
+    let mut closed = closed::without_multipliers(&declared.lets, &mut symbols);
     let context = Context { declared, lagrangian: &declared.expression, symbols: &symbols, directions: &directions };
     let direction = |factor| match context.first(factor) {
         e if context.is_added(factor) => e,
@@ -56,14 +58,17 @@ pub(super) fn force(
     if ![0, 1, 2, 3].into_iter().all(is_linear) {
         return Err(ForceError::NotLinear);
     }
+    closed::tangents(&context, &mut closed);
     let adjoint_defect = self_adjoint::defect(&context);
     let momentum = before.clone().scaled(-Rational::ONE);
-    let jacobian = momentum_equation::jacobian(&context, &momentum, &[]);
+    let jacobian = momentum_equation::jacobian(&context, &momentum, &closed);
     let parts = transport::parts(&context, &momentum, &before);
-    let cleared = cayley::cleared(&context, &parts.unknown);
-    let ends = context.ends(&[], [&momentum, &after]);
+    let cleared = if closed.is_empty() { cayley::cleared(&context, &parts.unknown) } else { None };
+    let ends = context.ends(&closed, [&momentum, &after]);
     let after = context.substituted(&after, &transport::previous(&context).into_iter().collect());
     let kick_after = parts.kick_after.plus(after);
+    let unknown =
+        if closed.is_empty() { transport::in_small_increment(&context, &parts.unknown) } else { parts.unknown };
     let none = || Expression::zero((1, 1));
     Ok(Derivation {
         group: declared.group.clone(),
@@ -76,7 +81,7 @@ pub(super) fn force(
         energy: none(),
         adjoint_defect,
         flow: None,
-        closed: Vec::new(),
+        closed,
         previous: transport::previous(&context),
         limit: Limit {
             has_kinetic: false,
@@ -88,7 +93,7 @@ pub(super) fn force(
         },
         kick_before: parts.kick_before,
         kick_derivative: None,
-        unknown: transport::in_small_increment(&context, &parts.unknown),
+        unknown,
         kick_after: transport::with_small_increment(&context, &kick_after),
         shown_kick_after: kick_after,
         half_step: context.half_step(),
