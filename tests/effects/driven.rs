@@ -6,7 +6,7 @@ use liestep::groups::{Given, SE3};
 use liestep::laws::samples::Random;
 use liestep::mechanics::{Scene, Sum};
 use liestep::methods::{CompositionScheme, ExactBody, ProcessedScheme, SplittingScheme, SymmetricBody};
-use liestep::motion::{Plan, Steerable};
+use liestep::motion::Steerable;
 use liestep::prelude::*;
 use liestep::{StepError, Stepper};
 use nalgebra::{Matrix3, Matrix4, Point3, Rotation3, SVector, Vector2, Vector3, Vector4};

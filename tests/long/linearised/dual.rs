@@ -4,7 +4,7 @@ use liestep::gradients::{Input, InputOf, Linearisable};
 use liestep::groups::LieGroup;
 use liestep::laws::samples::{MatrixLieGroup, Random, along};
 use liestep::mechanics::{Effect, SecondDerivatives};
-use liestep::motion::{Plan, Steerable, Stepper};
+use liestep::motion::{Steerable, Stepper};
 use liestep::numbers::{Coordinates, Entries};
 use nalgebra::{SMatrix, SVector};
 use num_dual::Dual64;
