@@ -12,14 +12,15 @@ use liestep::effects::{Rotor, Torque};
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
 use liestep::methods::{Multibody, MultibodyStepper, Redundancy};
-use liestep::motion::{Layout, Propagator, StepReport};
+use liestep::motion::{Cost, Layout, Propagator, StepReport};
 use liestep::with::Scheme;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
 use crate::file::body::Kinetic;
 use crate::file::control::locked;
-use crate::file::joint::{Joint, Kind};
+use crate::file::joint::{Joint, Number};
+use crate::file::joint_kind::Kind;
 use crate::file::orbit::Time;
 use crate::file::part::{Between, SystemBody};
 use crate::file::scene::SceneFile;
@@ -229,39 +230,40 @@ impl System {
 
 /// Adds the springs, the friction, the motor and its rotor of a joint.
 fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) {
-    let Joint { kind, at, axes, terms, .. } = *joint;
+    let (Joint { kind, at, axes, .. }, of) = (*joint, |number| joint.number(number));
+    let (rest, friction) = (of(Number::Rest).unwrap_or(0.0), of(Number::Friction).zip(of(Number::Below)));
     if kind == Kind::Slider {
         let axis = axes[0];
-        if terms.has_spring() {
+        if joint.has(&[Number::Stiffness, Number::Effort]) {
             // The shift is between the points of both bodies, that of the term from the first body's centre.
-            let (k, rest) = (terms.stiffness.unwrap_or(0.0), terms.rest + axis.dot(&at[0]));
-            system.between(bodies, SliderSpring { k, rest, force: terms.effort.unwrap_or(0.0), axis, at_2: at[1] });
+            let (k, force) = (of(Number::Stiffness).unwrap_or(0.0), of(Number::Effort).unwrap_or(0.0));
+            system.between(bodies, SliderSpring { k, rest: rest + axis.dot(&at[0]), force, axis, at_2: at[1] });
         }
-        if let Some(c) = terms.damping {
+        if let Some(c) = of(Number::Damping) {
             system.between(bodies, SliderDamping { c, axis });
         }
-        if let Some([force, speed]) = terms.friction {
+        if let Some((force, speed)) = friction {
             system.between(bodies, SliderFriction { force, speed, axis });
         }
-        if let Some(a) = terms.armature {
+        if let Some(a) = of(Number::Armature) {
             system.between(bodies, SliderArmature { a, axis, at_2: at[1] });
         }
         return;
     }
-    if let Some(k) = terms.stiffness {
-        system.between(bodies, JointSpring { k, rest: joint.attitude_at(terms.rest) });
+    if let Some(k) = of(Number::Stiffness) {
+        system.between(bodies, JointSpring { k, rest: joint.attitude_at(rest) });
     }
-    if let Some(torque) = terms.effort {
+    if let Some(torque) = of(Number::Effort) {
         let [axis_1, axis_2] = [axes[0], joint.zero.tr_mul(&axes[0])];
         system.between(bodies, JointTorque { torque, axis_1, axis_2 });
     }
-    if let Some(c) = terms.damping {
+    if let Some(c) = of(Number::Damping) {
         system.between(bodies, JointDamping { c });
     }
-    if let Some([torque, rate]) = terms.friction {
+    if let Some((torque, rate)) = friction {
         system.between(bodies, DryFriction { torque, rate });
     }
-    if let Some(a) = terms.armature {
+    if let Some(a) = of(Number::Armature) {
         system.between(bodies, Armature { a });
     }
 }
@@ -366,6 +368,10 @@ impl Mechanism for Bodies {
 
     fn gap(&self, state: &[f64]) -> f64 {
         self.first.widest_gap(state)
+    }
+
+    fn cost(&self) -> Option<Cost> {
+        self.first.cost()
     }
 
     fn joint_forces(&self, stepper: &Rc<MultibodyStepper>, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {

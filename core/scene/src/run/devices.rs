@@ -1,7 +1,7 @@
 //! Steps of bodies with laws and wheels, and of several bodies along an orbit: torques that are sampled and held, momenta that
 //! wheels exchange with their bodies, and parameters over time.
 
-use liestep::motion::{Layout, Propagator, StepReport};
+use liestep::motion::{Cost, Layout, Propagator, StepReport};
 use liestep::with::Clock;
 use liestep::{SetupError, StepError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -60,6 +60,11 @@ pub(crate) trait Mechanism {
         0.0
     }
 
+    /// The operations of a stage.
+    fn cost(&self) -> Option<Cost> {
+        None
+    }
+
     fn joint_forces(&self, _: &Self::Numbers, _state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
         Ok(Vec::new())
     }
@@ -88,6 +93,12 @@ const MOST_ROUNDS: u32 = 200;
 const OF_A_LAW: StepError = StepError::NonFinite { what: "torque of a law" };
 const OF_A_SIGNAL: StepError = StepError::NonFinite { what: "value over time" };
 
+/// The number of steps of a state.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number
+fn steps(state: &[f64]) -> u64 {
+    state.last().map_or(0, |steps| *steps as u64)
+}
+
 impl<M: Mechanism> Devices<M> {
     /// The stepper of a file with a mechanism of this many bodies, with stages of these shares of a step of `h`, s, or of the
     /// lengths of a clock.
@@ -105,10 +116,9 @@ impl<M: Mechanism> Devices<M> {
     }
 
     /// The length of the step ahead of a state, or of that behind it, s; NaN for a slice that is no state.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a number of steps
     fn step_at(&self, state: &[f64], is_ahead: bool) -> f64 {
         let Some(clock) = &self.clock else { return self.h };
-        let steps = state.last().map_or(0, |steps| *steps as u64);
+        let steps = steps(state);
         let length = if is_ahead { clock.length(steps) } else { clock.length_before(steps) };
         length.unwrap_or(f64::NAN)
     }
@@ -425,6 +435,12 @@ impl<M: Mechanism> Propagator for Devices<M> {
         found().unwrap_or_else(nowhere)
     }
 
+    #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)] // a count of stages
+    fn cost(&self) -> Option<Cost> {
+        let (stages, Cost { step, fewest, .. }) = (self.shares.len(), self.mechanism.cost()?);
+        Some(Cost { step: step * stages as f64, fewest: fewest * stages as u32, ..self.mechanism.cost()? })
+    }
+
     fn step_size(&self) -> f64 {
         self.h
     }
@@ -434,8 +450,7 @@ impl<M: Mechanism> Propagator for Devices<M> {
             let last = state.len() - 1;
             let begin = match &self.clock {
                 None => self.h * state[last],
-                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a number of steps
-                Some(clock) => clock.time(state[last] as u64),
+                Some(clock) => clock.time(steps(state)),
             };
             begin + state[last - 1]
         })
