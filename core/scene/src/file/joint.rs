@@ -133,15 +133,16 @@ impl Key {
     const fn may_change(&self) -> bool {
         (self.1 as usize) < Number::Armature as usize
     }
+}
 
-    /// The keys of numbers that may change with time, with their units.
-    pub(crate) fn changing() -> String {
-        let words = KEYS.iter().filter(|key| key.may_change()).map(|key| {
-            let units: Vec<_> = key.5.iter().flatten().map(|(_, unit)| *unit).collect();
-            format!("{} in {}", key.0, units.join(" or "))
-        });
-        words.collect::<Vec<_>>().join(", ")
-    }
+/// The keys of numbers that may change with time, with their units.
+#[must_use]
+pub fn changing_numbers() -> String {
+    let words = KEYS.iter().filter(|key| key.may_change()).map(|key| {
+        let units: Vec<_> = key.5.iter().flatten().map(|(_, unit)| *unit).collect();
+        format!("{} in {}", key.0, units.join(" or "))
+    });
+    words.collect::<Vec<_>>().join(", ")
 }
 
 /// The ends of a joint's way, which are watched: angles of a pin, rad, or shifts of a slider, m.

@@ -31,7 +31,7 @@ pub(crate) trait Mechanism {
 
     fn start(&self, numbers: &Self::Numbers, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError>;
 
-    /// Makes a stage of a step, of this length, s; the memory of the state is that of a new start.
+    /// Makes a stage of a step, of this length, s.
     fn step(
         &self,
         stage: usize,
@@ -39,6 +39,9 @@ pub(crate) trait Mechanism {
         length: f64,
         state: &mut Vec<f64>,
     ) -> Result<StepReport, StepError>;
+
+    /// Gives a state the memory of a new start.
+    fn forget(&self, _state: &mut Vec<f64>) {}
 
     fn velocity(&self, numbers: &Self::Numbers, state: &[f64]) -> Vec<f64>;
 
@@ -305,6 +308,9 @@ impl<M: Mechanism> Devices<M> {
     /// The memory of a state with the samples of a step of this length, s, and the torques of the motors in it.
     fn sampled(&self, state: &[f64], length: f64) -> Result<(Vec<f64>, Memory, Vec<f64>), StepError> {
         let (inner, mut memory) = self.parts(state);
+        if !self.file.has_devices() {
+            return Ok((inner, memory, Vec::new()));
+        }
         let velocity = self.rates(state, (&inner, &memory));
         if length > 0.0 && memory.part == 0.0 {
             self.sample(state, &mut memory, &velocity)?;
@@ -397,6 +403,7 @@ impl<M: Mechanism> Propagator for Devices<M> {
             return Ok(self.layout.checked(state)?.into());
         }
         let (mut next, mut memory, _) = self.advance(self.layout.checked(state)?, length)?;
+        self.mechanism.forget(&mut next);
         let last = next.len() - 1;
         next[last] = state[state.len() - 1];
         memory.part += length;
