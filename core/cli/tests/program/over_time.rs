@@ -423,7 +423,8 @@ fn bare_angles_are_said_to_be_in_rad() {
     };
     let told = |text: &str, command: &str| {
         fs::write(folder.join("scene.toml"), text).unwrap();
-        let output = called(&folder, &[command, "scene.toml", "--out", "."]);
+        let _ = fs::remove_dir_all(folder.join("out"));
+        let output = called(&folder, &[command, "scene.toml", "--out", "out"]);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         String::from_utf8([output.stdout, output.stderr].concat()).unwrap()
     };
