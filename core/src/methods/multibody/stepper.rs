@@ -131,13 +131,12 @@ impl MultibodyStepper {
         system.terms.sort_by_key(|(body, _)| *body);
         let pairs = system.pairs.iter().map(|(bodies, term)| (bodies, term.has_unknown()));
         let (couplings, coupled) = couplings(pairs);
-        let (tree, free) = match known.filter(|known| known.tree.couplings == coupled) {
-            Some(known) => (Arc::clone(&known.tree), Arc::clone(&known.free)),
-            None => {
-                let tree = Tree::of(&system.joints, system.bodies, coupled)?;
-                let free = tree.without_joints();
-                (Arc::new(tree), Arc::new(free))
-            }
+        let (tree, free) = if let Some(known) = known.filter(|known| known.tree.couplings == coupled) {
+            (Arc::clone(&known.tree), Arc::clone(&known.free))
+        } else {
+            let tree = Tree::of(&system.joints, system.bodies, coupled)?;
+            let free = tree.without_joints();
+            (Arc::new(tree), Arc::new(free))
         };
         let is_reduced = |joined: &Joint| joined.functions.gap_of_all(&Place::SPACE, &Place::SPACE).is_some();
         let reduced =
