@@ -34,10 +34,14 @@ A scene is a file of TOML, as this one of a body in space:
   step = 0.01                              # s, or an accuracy
   duration = 10                            # s
 
-Several bodies are tables [[body]] with [[joint]], whose torque may change over time, too, or by { formula = \"2 * sin(3 * t)\" }; along an
-[orbit] a duration may be \"3 orbits\". Further tables are [orbit] with a tle, [[control]], [[wheel]], [[pointing]], [output],
+Several bodies are tables [[body]] with [[joint]], whose numbers may change over time, too, or by { formula = \"2 * sin(3 * t)\" }:
+NUMBERS. Along an [orbit] a duration may be \"3 orbits\". Further tables are [orbit] with a tle, [[control]], [[wheel]], [[pointing]], [output],
 [sweep] and [ensemble]. A key that isn't known is answered by those that its table has. The page of `liestep-scene` has all of them,
 and examples/scenes many scenes.";
+
+fn scene() -> String {
+    SCENE.replace("NUMBERS", &liestep_scene::changing_numbers())
+}
 
 pub(crate) fn command() -> Command {
     let scenes = || files("The scene files");
@@ -53,14 +57,14 @@ pub(crate) fn command() -> Command {
         .subcommand(
             Command::new("run")
                 .about("Simulates scenes and draws them")
-                .after_help(SCENE)
+                .after_help(scene())
                 .arg(scenes())
                 .arg(out())
                 .arg(flag("csv", "Also write a table as CSV, while it runs"))
                 .arg(flag("arrow", "Also write the table as a stream of Arrow IPC, .arrows, while it runs; in Python pyarrow.ipc.open_stream(path).read_pandas() reads it"))
                 .arg(flag("html", "Also write a page that plays the motion, to be opened in a browser")),
         )
-        .subcommand(Command::new("check").about("Reads scenes and makes their first step").after_help(SCENE).arg(scenes()))
+        .subcommand(Command::new("check").about("Reads scenes and makes their first step").after_help(scene()).arg(scenes()))
         .subcommand(
             Command::new("sweep")
                 .about("Runs every scene of a file's table `sweep`, and prints a row of FILE.sweep.csv for each")

@@ -1,5 +1,6 @@
 //! A declaration with numbers as a scene to run, for any group and any advected parameters.
 
+use std::rc::Rc;
 use std::sync::Arc;
 
 use liestep::accuracy::{Accuracy, Choice};
@@ -135,10 +136,13 @@ impl Scene {
         let layout = layout::<Backend>(self.declaration)?;
         let (attitude, velocity) = (start.attitude(&layout.factors)?, start.velocity(&layout.factors)?);
         let question = Question { accuracy, attitude: &attitude, velocity };
-        let found = for_accuracy::<Backend>(self.declaration, &self.numbers, question);
+        let own: Option<Rc<dyn liestep_late::Course>> = self.has_changes().then(|| Rc::new(self.course()) as Rc<_>);
+        let found = for_accuracy::<Backend>(self.declaration, &self.numbers, own, question);
+        // A trial by longer steps may have left the values of a signal.
+        let cause = self.changes.cause();
         let (stepper, choice) = found.map_err(|error| match error {
             QuestionError::Whole(error) => error.into(),
-            QuestionError::Accuracy(error) => Failure::setup(&error),
+            QuestionError::Accuracy(error) => cause.unwrap_or_else(|| Failure::setup(&error)),
         })?;
         Ok((record(&stepper, started(&stepper, start)?, course)?, choice))
     }

@@ -32,6 +32,7 @@ mod show;
 pub use file::column::Column;
 pub use file::draws::{SceneEnsemble, Spread};
 pub use file::histogram::EndHistogram;
+pub use file::joint::changing_numbers;
 pub use file::kepler::orbit;
 pub use file::kinds::Scene;
 pub use file::mistake::{Kind, Mistake, visible};

@@ -236,7 +236,7 @@ fn devices_of_several_bodies_name_their_bodies() {
             "m = 1\nmoments = [0, 0, 0]",
             "`dipole` turns a body, and a point mass has no inertia",
         ),
-        ("step = 0.02", "accuracy = 1e-6", "an accuracy chooses a method for what doesn't change with time"),
+        ("step = 0.02", "accuracy = 1e-6", "laws and wheels are beside a `step`, and neither an accuracy"),
         (
             "[orbit]\nperiod = 60\nnormal = [0, 0, 1]\neccentricity = 0.1\nphase = \"40 deg\"\n",
             "",

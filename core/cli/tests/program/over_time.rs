@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use crate::called::{apart, folder, printed, refused, rows};
+use crate::called::{apart, called, folder, printed, refused, rows};
 
 /// Two bodies on one axis through both, which turn about it against each other.
 fn pair(kind: &str, motor: &str) -> String {
@@ -132,6 +132,70 @@ fn a_driven_arm_has_its_order() {
     let order = (coarse / fine).log2();
     println!("composition: {coarse:e}, {fine:e}, of order {order}");
     assert!(fine < 1e-4 && (order - 4.0).abs() < 0.2, "{coarse:e}, {fine:e}, of order {order}");
+}
+
+/// An accuracy chooses a method beside values over time, whose error is as small as is asked for: a composition of an arm, and the
+/// step where there is friction; of one body, too.
+#[test]
+fn an_accuracy_is_kept_beside_values_over_time() {
+    let folder = folder("an_accuracy_is_kept_beside_values_over_time");
+    let off = |terms: &str, accuracy: f64, exact: [f64; 2]| {
+        let rows = rows(&folder, &arm(&format!("{SPRING}{terms}"), &format!("accuracy = {accuracy:e}")));
+        let end = rows.last().unwrap();
+        let told = printed(&folder, &["run", "scene.toml", "--out", "."]);
+        println!("{told}");
+        ((end[1] - exact[0]).hypot(end[3] - exact[1]), told)
+    };
+    let exact = integrated(|t| 3.0 * (5.0 * t).sin(), |_| 0.0);
+    let (smooth, told) = off("torque = { formula = \"3 * sin(5 * t)\" }", 1e-7, exact);
+    // Attitudes and velocities count relative to theirs, of some 2 and 5 rad/s.
+    assert!(smooth < 1e-6 && smooth > 1e-10 && told.contains("composition"), "{smooth:e}\n{told}");
+    let exact = integrated(|t| on_lines(t, [0.0, 3.0, -2.0, 1.0]), |t| on_lines(t, [0.0, 0.5, 0.1, 0.3]));
+    let lines = |key: &str, values: &str| {
+        format!("{key} = {{ times = [0, 1, 2, 4], values = {values}, between = \"lines\" }}\n")
+    };
+    let (rough, told) = off(&(lines("torque", "[0, 3, -2, 1]") + &lines("damping", "[0, 0.5, 0.1, 0.3]")), 1e-4, exact);
+    assert!(rough < 1e-3 && !told.contains("composition"), "{rough:e}\n{told}");
+    // A pulse that is on from .7 s to 2.2 s on a body at rest, which turns by 2 · (1.5²/2 + 1.5 · 1.8)/2.5 until 4 s.
+    let one = format!(
+        "title = \"One\"\nbody.moments = [1, 2, 2.5]\nstart = {{ euler = [0, 0, 0], velocity = [0, 0, 0] }}\n[torque]\ntorque = \
+         {}\n[run]\naccuracy = 1e-6\nduration = 4\n[output]\ncolumns = [\"quaternion\", \"momentum\"]\n",
+        PULSE.replace("[0, 2, 0]", "[[0, 0, 0], [0, 0, 2], [0, 0, 0]]")
+    );
+    let rows = rows(&folder, &one);
+    let end = rows.last().unwrap();
+    let half: f64 = (1.5 * 1.5 / 2.0 + 1.5 * 1.8) / 2.5;
+    assert!((end[1] - half.cos()).hypot(end[4] - half.sin()) < 2e-6 && (end[7] - 3.0).abs() < 1e-13, "{end:?}");
+}
+
+/// Dry friction in a slider that is on from .7 s to 2.2 s takes its impulse from one body, and gives it to the other.
+#[test]
+fn dry_friction_in_a_slider_has_its_impulse() {
+    let folder = folder("dry_friction_in_a_slider_has_its_impulse");
+    let friction = PULSE.replace("[0, 2, 0]", "[0, 0.4, 0]");
+    let text = pair("slider", &format!("friction = {{ force = {friction}, below = 1e-7 }}"));
+    let moving = text.replacen("position = [0, 0, 0]", "position = [0, 0, 0]\nmoving = [0, 0, 1]", 1);
+    let found = momenta(rows(&folder, &moving).last().unwrap());
+    assert!((found[2] - 1.4).abs() < 1e-12 && (found[3] - 0.6).abs() < 1e-12, "{found:?}");
+}
+
+/// Torques and drag on one of several bodies have steps back, so that a composition has its order.
+#[test]
+fn compositions_beside_forces_on_bodies_have_their_order() {
+    let folder = folder("compositions_beside_forces_on_bodies_have_their_order");
+    let end = |step: &str, method: &str| {
+        let text = arm("", &format!("step = {step}\nmethod = {{ composition = \"{method}\" }}"));
+        let effects = "torque.torque = { formula = \"[0, sin(5 * t), 0]\" }\ndrag.c = 0.2\n[[joint]]";
+        let rows = rows(&folder, &text.replacen("[[joint]]", effects, 1));
+        let end = rows.last().unwrap();
+        [end[1], end[3]]
+    };
+    let exact = end("0.0125", "Kahan-Li 8");
+    let off = |step: &str| end(step, "Suzuki 4").iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let [coarse, fine] = [off("0.1"), off("0.05")];
+    let order = (coarse / fine).log2();
+    println!("{coarse:e}, {fine:e}, of order {order}");
+    assert!(fine < 1e-3 && (order - 4.0).abs() < 0.3, "{coarse:e}, {fine:e}, of order {order}");
 }
 
 const FIELD: &str =
@@ -297,8 +361,6 @@ fn mistakes_over_time_have_their_place() {
         assert!(found.contains(message) && found.contains("top.toml:22:"), "{motor}: {found}");
     }
     let pulse = pair("pin", &format!("torque = {PULSE}"));
-    let told = refused(&folder, &pulse.replace("step = 0.4", "accuracy = 1e-3"));
-    assert!(told.contains("an accuracy chooses a method for what doesn't change with time; joint does"), "{told}");
     let mass = pulse.replacen("m = 2", "m = { formula = \"2 + t\" }", 1);
     assert!(refused(&folder, &mass).contains("`m` of `body` can't change with time"));
     let dipole = pulse.replacen("m = 2", "m = 2\ndipole = { moment = { formula = \"t\" }, field = [0, 0, 1] }", 1);
@@ -349,4 +411,39 @@ fn steps_per_orbit_are_those_of_one_body() {
     let [coarse, fine] = [off("100"), off("200")];
     println!("{coarse:e}, {fine:e}");
     assert!(((coarse / fine).log2() - 4.0).abs() < 0.3, "{coarse:e}, {fine:e}");
+}
+
+/// An angle that is a number alone in limits, an event or a histogram is said to be in rad, once.
+#[test]
+fn bare_angles_are_said_to_be_in_rad() {
+    let folder = folder("bare_angles_are_said_to_be_in_rad");
+    let hinge = |limits: &str, event: &str| {
+        pair("pin", &format!("torque = 0.001\nlimits = {limits}"))
+            + &format!("[[event]]\nname = \"far\"\ncolumn = \"hinge_angle\"\nvalue = {event}\n")
+    };
+    let told = |text: &str, command: &str| {
+        fs::write(folder.join("scene.toml"), text).unwrap();
+        let _ = fs::remove_dir_all(folder.join("out"));
+        let output = called(&folder, &[command, "scene.toml", "--out", "out"]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8([output.stdout, output.stderr].concat()).unwrap()
+    };
+    let note = "angles by numbers alone are in rad, so this is 286 deg: write \"5 rad\", or \"5 deg\" if that is meant";
+    for (limits, event, count) in [
+        ("{ from = \"-1 rad\", to = 5.0 }", "5.0", 1),
+        ("{ from = \"-1 rad\", to = \"5 rad\" }", "5.0", 1),
+        ("{ from = 0, to = \"5 deg\" }", "\"5 deg\"", 0),
+    ] {
+        let told = told(&hinge(limits, event), "run");
+        assert_eq!((told.matches(note).count(), told.matches("in rad").count()), (count, count), "{told}");
+    }
+    for (begin, end, count) in [("0", "5.0", 1), ("\"0 rad\"", "\"5 rad\"", 0)] {
+        let ensemble = format!(
+            "[ensemble]\nmembers = 2\ndraw.joint.hinge.damping = {{ from = 1, to = 2 }}\n\
+             histogram.hinge_angle = {{ from = {begin}, to = {end}, count = 2 }}\n"
+        );
+        let text = pair("pin", "damping = 1").replace("columns = [", "columns = [\"angle\", ") + &ensemble;
+        let told = told(&text, "ensemble");
+        assert_eq!(told.matches(note).count(), count, "{told}");
+    }
 }

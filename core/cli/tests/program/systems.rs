@@ -466,18 +466,15 @@ fn effects_turn_one_of_several_bodies() {
         )
     };
     let whole = text("moments = [1, 1, 1]\ndrag.c = 0.1", "accuracy = 1e-4");
-    let choice = run(&whole).choice().unwrap().clone();
-    assert_eq!((choice.offers().len(), system(&whole).about().as_str()), (1, "1 body + drag, 1 s to 1e-4"));
+    assert_eq!(
+        (run(&whole).choice().unwrap().offers().len() > 1, system(&whole).about().as_str()),
+        (true, "1 body + drag, 1 s to 1e-4")
+    );
     assert!(system(&whole).derivation().contains(liestep_scene::derivation("drag").unwrap()));
-    let composed = "step = 0.1\nmethod = { composition = \"Suzuki 4\" }";
     let refused = [
         (
             text("moments = [0, 0, 0]\ntorque.torque = [0, 0, 1]", "step = 0.1"),
             "`torque` turns a body, and a point mass has no inertia",
-        ),
-        (
-            text("moments = [1, 1, 1]\ndrag.c = 0.1", composed),
-            "a composition needs a conservative scene; drag of `a` does work",
         ),
         (
             text("moments = [1, 1, 1]\nmagnetic_damping = { k = 1, field = { equator = [0, 0, 1] } }", "step = 0.1"),

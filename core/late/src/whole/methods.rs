@@ -1,5 +1,7 @@
 //! The stepper of a declaration by any method, and by the cheapest one for an accuracy.
 
+use std::rc::Rc;
+
 use liestep::accuracy::{Accuracy, AccuracyError, Candidate, Choice, choose, displacement, of_any_group};
 use liestep::motion::{AnyStepper, Layout};
 use liestep::with::{Method, Scheme, Steppable as _};
@@ -9,6 +11,7 @@ use liestep_derivation::whole::Form;
 
 use super::codes::Codes;
 use super::collocation::Collocation;
+use super::course::Course;
 use super::hamiltonian::Hamiltonian;
 use super::rotating::RotatingScene;
 use super::stepper::{Whole, WholeError};
@@ -169,7 +172,7 @@ pub enum QuestionError {
 }
 
 /// The stepper that is the cheapest for an accuracy, as by [`Stepper::for_accuracy`](liestep::Stepper::for_accuracy), and the
-/// choice.
+/// choice. Beside a course of the numbers it is the declared step or a composition of it.
 ///
 /// # Errors
 ///
@@ -177,6 +180,7 @@ pub enum QuestionError {
 pub fn for_accuracy<B: Backend<f64>>(
     declaration: &'static Declaration,
     numbers: &[f64],
+    course: Option<Rc<dyn Course>>,
     question: Question<'_>,
 ) -> Result<(AnyStepper, Choice), QuestionError> {
     if declaration.energy.is_some() {
@@ -186,16 +190,24 @@ pub fn for_accuracy<B: Backend<f64>>(
     sized(declaration, numbers).map_err(WholeError::from)?;
     let mut schemes: Vec<Scheme> = of_any_group(declaration.is_self_adjoint).collect();
     let has_lagrangian = !declaration.has_force && declaration.constraints.each.is_empty();
-    if has_lagrangian && is_of_rotations::<B>(declaration).map_err(WholeError::from)? {
+    if course.is_none() && has_lagrangian && is_of_rotations::<B>(declaration).map_err(WholeError::from)? {
         let scene = RotatingScene::<B>::of(declaration, numbers).map_err(WholeError::from)?;
         schemes.extend(SO3::schemes(&scene));
     }
     let candidate = |scheme| {
-        let numbers = numbers.to_vec();
-        let make = move |h| match stepper::<B>(declaration, &numbers, h, Method::from(scheme)) {
-            Ok(stepper) => Ok(stepper),
-            Err(WholeError::Setup(error)) => Err(error),
-            Err(_) => Err(SetupError::Method { cause: "has no step of this declaration; take another" }),
+        let (numbers, course, method) = (numbers.to_vec(), course.clone(), Method::from(scheme));
+        let make = move |h| {
+            let made = match &course {
+                None => stepper::<B>(declaration, &numbers, h, method),
+                Some(course) => Whole::<B>::of(declaration, &numbers, h, method)
+                    .and_then(|whole| Ok(AnyStepper::new(whole.varied().along(Rc::clone(course))?))),
+            };
+            made.map_err(|error| match error {
+                WholeError::Setup(error) => error,
+                WholeError::Declaration(_) => {
+                    SetupError::Method { cause: "has no step of this declaration; take another" }
+                }
+            })
         };
         Candidate { scheme, make: Box::new(make) }
     };

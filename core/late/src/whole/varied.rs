@@ -132,10 +132,14 @@ impl<B: Backend<f64>> Varied<B> {
     ///
     /// The errors of [`Whole::with`] for the numbers at the time zero.
     pub fn driven(self, course: impl Course + 'static) -> Result<Self, SetupError> {
+        self.along(Rc::new(course))
+    }
+
+    pub(super) fn along(self, course: Rc<dyn Course>) -> Result<Self, SetupError> {
         let mut numbers = self.whole.numbers().to_vec();
         course.at(0.0, &mut numbers);
         let whole = self.whole.with(&numbers, self.whole.h)?;
-        Ok(Self { whole, course: Some(Rc::new(course)), ..self })
+        Ok(Self { whole, course: Some(course), ..self })
     }
 
     fn memory<'a>(&self, state: &'a [f64]) -> &'a [f64] {

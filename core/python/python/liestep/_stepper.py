@@ -424,7 +424,7 @@ class _Search(Stepper):
 
     def _made(self, start: _Start, course: _Course, names: list[str]) -> Run:
         scene = self.term._scene()
-        if not scene.is_self_adjoint or self.term._signals() or start.is_by_momentum:
+        if not scene.is_self_adjoint or start.is_by_momentum:
             return self._by_own_steps(start, course, names)
         made = scene.ask(self.tolerance, start, course)
         kind, name = made["method"]

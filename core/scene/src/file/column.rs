@@ -8,7 +8,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use crate::file::group::Group;
-use crate::file::joint::Kind;
+use crate::file::joint_kind::Kind;
 use crate::file::mistake::{SpanMessage, advised};
 use crate::file::sample::{BodySample, Sample};
 

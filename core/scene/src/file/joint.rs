@@ -7,11 +7,12 @@ use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::file::joint_kind::Kind;
 use crate::file::mistake::SpanMessage;
 use crate::file::orbit::put;
 use crate::file::quantity::{
     Angle, Damping, Direction, Force, Inertia, Length, LinearDamping, Mass, PositiveScalar, Quantity, Rate, Scalar,
-    Speed, Stiffness, Torque, Triple, TurningStiffness, short,
+    Speed, Stiffness, Torque, Triple, TurningStiffness, short, si,
 };
 use crate::file::start::Attitude;
 
@@ -27,10 +28,9 @@ pub(crate) struct Joint {
     pub(crate) zero: Matrix3<f64>,
     /// The distance between the points of a rod, m.
     pub(crate) length: f64,
-    pub(crate) terms: Terms,
     pub(crate) limits: Option<Limits>,
-    /// The start by the coordinates of the joint, of bodies without places of their own.
-    pub(crate) start: Coordinates,
+    /// The numbers that the file gives, each at the place of its [`Number`].
+    numbers: [Option<f64>; NUMBERS],
     /// 1, or −1 where the file names the bodies in the other order: the sign of angles and shifts there.
     pub(crate) sign: f64,
 }
@@ -38,28 +38,111 @@ pub(crate) struct Joint {
 /// The attitude of a body, or of space, and the place of its origin.
 pub(crate) type Pose = (Matrix3<f64>, Vector3<f64>);
 
-/// Terms in a joint: those of a slider are of shifts, others of turns.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Terms {
-    /// N m s, or N s/m.
-    pub(crate) damping: Option<f64>,
-    /// N m/rad, or N/m.
-    pub(crate) stiffness: Option<f64>,
-    /// The angle or the shift at which the spring is at rest, rad or m.
-    pub(crate) rest: f64,
-    /// The torque or the force of a motor, N m or N.
-    pub(crate) effort: Option<f64>,
-    /// The torque of dry friction, N m, and the rate below which it is viscous, rad/s; in a slider a force, N, and a speed, m/s.
-    pub(crate) friction: Option<[f64; 2]>,
-    /// The inertia of a motor's rotor, as the joint feels it, kg m² or kg.
-    pub(crate) armature: Option<f64>,
+/// A number of the terms in a joint, or of its start, which places bodies without places of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Number {
+    Damping,
+    Stiffness,
+    /// The angle or the shift at which the spring is at rest.
+    Rest,
+    /// The torque or the force of a motor.
+    Effort,
+    /// The torque or the force of dry friction.
+    Friction,
+    /// The rate or the speed below which dry friction is viscous.
+    Below,
+    /// The inertia of a motor's rotor, as the joint feels it. It and all that follow don't change with time.
+    Armature,
+    Angle,
+    Rate,
+    Shift,
+    Speed,
 }
 
-impl Terms {
-    /// Whether a slider has a spring, or a motor, which is a part of the same term.
-    pub(crate) fn has_spring(&self) -> bool {
-        self.stiffness.is_some() || self.effort.is_some()
+const NUMBERS: usize = Number::Speed as usize + 1;
+
+/// The numbers that a key may have.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    /// All, with the opposite sign where the file names the bodies in the other order.
+    Either,
+    /// Those above zero, and over time zero, where the term is off.
+    OrOff,
+    /// Those above zero.
+    Above,
+}
+
+/// The reader of a quantity's value, and its SI unit.
+type Measure = (fn(&Given) -> Result<f64, SpanMessage>, &'static str);
+
+const fn unit<Q: Quantity>() -> Measure {
+    (read::<Q>, si::<Q>())
+}
+
+/// A key of a joint for a number: its name, the number, where a table has it, the kinds that have it beside sliders, the numbers that it
+/// may have, and its unit in such joints and in sliders.
+pub(crate) struct Key(&'static str, Number, Value, fn(Kind) -> bool, Sign, [Option<Measure>; 2]);
+
+type Value = fn(&JointTable) -> Option<&Given>;
+
+/// All numbers of joints, as files have them.
+const KEYS: [Key; 13] = {
+    use Kind as K;
+    use Number as N;
+    use Sign::{Above, Either, OrOff};
+    const fn both<Q: Quantity, P: Quantity>() -> [Option<Measure>; 2] {
+        [Some(unit::<Q>()), Some(unit::<P>())]
     }
+    const fn turn<Q: Quantity>() -> [Option<Measure>; 2] {
+        [Some(unit::<Q>()), None]
+    }
+    const fn slide<Q: Quantity>() -> [Option<Measure>; 2] {
+        [None, Some(unit::<Q>())]
+    }
+    [
+        Key("damping", N::Damping, |of| of.damping.as_ref(), K::turns, OrOff, both::<Damping, LinearDamping>()),
+        Key(
+            "stiffness",
+            N::Stiffness,
+            |of| of.stiffness.as_ref(),
+            K::springs,
+            OrOff,
+            both::<TurningStiffness, Stiffness>(),
+        ),
+        Key("rest", N::Rest, |of| of.rest.as_ref(), K::rests, Either, both::<Angle, Length>()),
+        Key("torque", N::Effort, |of| of.torque.as_ref(), K::turns_about_axis, Either, turn::<Torque>()),
+        Key("force", N::Effort, |of| of.force.as_ref(), K::turns_about_axis, Either, slide::<Force>()),
+        Key("friction.torque", N::Friction, |of| of.dry()?.torque.as_ref(), K::turns, OrOff, turn::<Torque>()),
+        Key("friction.force", N::Friction, |of| of.dry()?.force.as_ref(), K::turns, OrOff, slide::<Force>()),
+        Key("friction.below", N::Below, |of| of.dry()?.below.as_ref(), K::turns, Above, both::<Rate, Speed>()),
+        Key("armature", N::Armature, |of| of.armature.as_ref(), K::turns, Above, both::<Inertia, Mass>()),
+        Key("angle", N::Angle, |of| of.angle.as_ref(), K::turns_about_axis, Either, turn::<Angle>()),
+        Key("rate", N::Rate, |of| of.rate.as_ref(), K::turns_about_axis, Either, turn::<Rate>()),
+        Key("shift", N::Shift, |of| of.shift.as_ref(), K::shifts_along_axis, Either, both::<Length, Length>()),
+        Key("speed", N::Speed, |of| of.speed.as_ref(), K::shifts_along_axis, Either, both::<Speed, Speed>()),
+    ]
+};
+
+impl Key {
+    /// The unit in a joint of a kind; none where that hasn't the number.
+    fn unit(&self, kind: Kind) -> Option<Measure> {
+        let Self(.., has, _, [turning, sliding]) = self;
+        if kind == Kind::Slider { *sliding } else { turning.filter(|_| has(kind)) }
+    }
+
+    const fn may_change(&self) -> bool {
+        (self.1 as usize) < Number::Armature as usize
+    }
+}
+
+/// The keys of numbers that may change with time, with their units.
+#[must_use]
+pub fn changing_numbers() -> String {
+    let words = KEYS.iter().filter(|key| key.may_change()).map(|key| {
+        let units: Vec<_> = key.5.iter().flatten().map(|(_, unit)| *unit).collect();
+        format!("{} in {}", key.0, units.join(" or "))
+    });
+    words.collect::<Vec<_>>().join(", ")
 }
 
 /// The ends of a joint's way, which are watched: angles of a pin, rad, or shifts of a slider, m.
@@ -68,83 +151,6 @@ pub(crate) struct Limits {
     pub(crate) ends: [f64; 2],
     /// Whether the run stops there.
     pub(crate) stops: bool,
-}
-
-/// Angle, rad, and shift, m, of a joint, and their rates.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Coordinates {
-    pub(crate) angle: f64,
-    pub(crate) rate: f64,
-    pub(crate) shift: f64,
-    pub(crate) speed: f64,
-}
-
-/// The kind of a joint, see [`liestep::methods::Joint`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(crate) enum Kind {
-    Ball,
-    Pin,
-    Universal,
-    Cylinder,
-    Slider,
-    Weld,
-    Plane,
-    Distance,
-}
-
-impl Kind {
-    pub(crate) const ALL: [Self; 8] =
-        [Self::Ball, Self::Pin, Self::Universal, Self::Weld, Self::Cylinder, Self::Slider, Self::Plane, Self::Distance];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Ball => "ball joint",
-            Self::Pin => "pin",
-            Self::Universal => "universal joint",
-            Self::Cylinder => "cylinder",
-            Self::Slider => "slider",
-            Self::Weld => "weld",
-            Self::Plane => "plane",
-            Self::Distance => "distance",
-        }
-    }
-
-    fn has_axes(self) -> bool {
-        !matches!(self, Self::Ball | Self::Weld | Self::Distance)
-    }
-
-    /// Whether the axes of both bodies are parallel.
-    fn has_one_axis(self) -> bool {
-        self.has_axes() && self != Self::Universal
-    }
-
-    pub(crate) fn turns_about_axis(self) -> bool {
-        matches!(self, Self::Pin | Self::Cylinder | Self::Plane)
-    }
-
-    fn turns(self) -> bool {
-        !matches!(self, Self::Slider | Self::Weld | Self::Distance)
-    }
-
-    pub(crate) fn shifts_along_axis(self) -> bool {
-        matches!(self, Self::Slider | Self::Cylinder)
-    }
-
-    /// Whether points of both bodies coincide.
-    pub(crate) fn has_one_point(self) -> bool {
-        matches!(self, Self::Ball | Self::Pin | Self::Universal | Self::Weld)
-    }
-
-    /// Whether the functions are cosines in part.
-    pub(crate) fn has_cosines(self) -> bool {
-        !matches!(self, Self::Ball | Self::Distance)
-    }
-
-    /// Whether the coordinates of the joint give the place of one body by that of the other.
-    pub(crate) fn places(self) -> bool {
-        self != Self::Distance
-    }
 }
 
 /// The names of two bodies.
@@ -162,76 +168,52 @@ pub(crate) struct JointTable {
     axes: Option<Spanned<[Direction; 2]>>,
     zero: Option<Spanned<Attitude>>,
     length: Option<Spanned<PositiveScalar<Length>>>,
-    damping: Value,
-    stiffness: Value,
-    rest: Value,
-    torque: Value,
-    force: Value,
+    damping: Option<Given>,
+    stiffness: Option<Given>,
+    rest: Option<Given>,
+    torque: Option<Given>,
+    force: Option<Given>,
     friction: Option<Spanned<FrictionTable>>,
-    armature: Value,
+    armature: Option<Given>,
     limits: Option<Spanned<LimitsTable>>,
-    angle: Value,
-    rate: Value,
-    shift: Value,
-    speed: Value,
+    angle: Option<Given>,
+    rate: Option<Given>,
+    shift: Option<Given>,
+    speed: Option<Given>,
 }
 
-/// A value whose unit depends on the kind of joint.
-type Value = Option<Spanned<toml::Value>>;
+/// A number whose unit depends on the kind of joint.
+type Given = Spanned<toml::Value>;
 
 /// Dry friction, regularised: its torque, or its force in a slider.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FrictionTable {
-    torque: Value,
-    force: Value,
+    torque: Option<Given>,
+    force: Option<Given>,
     /// The rate or the speed below which friction is viscous.
-    below: Value,
+    below: Option<Given>,
 }
 
-impl FrictionTable {
-    /// The torque or the force, and the rate or the speed below which it is viscous.
-    fn friction(&self, span: Range<usize>, is_slider: bool) -> Result<[f64; 2], SpanMessage> {
-        let (own, other, message) = if is_slider {
-            (
-                &self.force,
-                &self.torque,
-                "dry friction in a slider has a `force`, N, and the speed `below` which it is viscous, m/s",
-            )
-        } else {
-            (
-                &self.torque,
-                &self.force,
-                "dry friction has a `torque`, N m, and the rate `below` which it is viscous, rad/s",
-            )
-        };
-        let [most, below] = if is_slider {
-            [positive::<Force>(own)?, positive::<Speed>(&self.below)?]
-        } else {
-            [positive::<Torque>(own)?, positive::<Rate>(&self.below)?]
-        };
-        match (most, below, other) {
-            (Some(most), Some(below), None) => Ok([most, below]),
-            (_, _, Some(other)) => Err((other.span(), message.to_owned())),
-            _ => Err((span, message.to_owned())),
-        }
-    }
-}
+/// The parts of dry friction in a joint that turns, and in a slider.
+const FRICTION: [&str; 2] = [
+    "dry friction has a `torque`, N m, and the rate `below` which it is viscous, rad/s",
+    "dry friction in a slider has a `force`, N, and the speed `below` which it is viscous, m/s",
+];
 
 /// The ends of a joint's way.
 #[derive(Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LimitsTable {
-    from: Spanned<toml::Value>,
-    to: Spanned<toml::Value>,
+    from: Given,
+    to: Given,
     #[serde(default)]
     stop: bool,
 }
 
 impl LimitsTable {
     fn limits<Q: Quantity>(self, span: Range<usize>, most: f64) -> Result<Limits, SpanMessage> {
-        let end = |value| Ok(read::<Q>(&Some(value))?.unwrap_or(0.0));
-        let [from, to] = [end(self.from)?, end(self.to)?];
+        let [from, to] = [read::<Q>(&self.from)?, read::<Q>(&self.to)?];
         if from >= to {
             return Err((span, "a joint moves `from` one place `to` a greater one".to_owned()));
         }
@@ -246,25 +228,19 @@ impl LimitsTable {
 }
 
 /// The number of a value with the units of a quantity.
-fn read<Q: Quantity>(value: &Value) -> Result<Option<f64>, SpanMessage> {
-    let Some(value) = value else { return Ok(None) };
+fn read<Q: Quantity>(value: &Given) -> Result<f64, SpanMessage> {
     let read = Scalar::<Q>::deserialize(value.get_ref().clone());
-    read.map(|scalar| Some(scalar.value)).map_err(|error| (value.span(), error.message().to_owned()))
-}
-
-/// A number above zero.
-fn positive<Q: Quantity>(value: &Value) -> Result<Option<f64>, SpanMessage> {
-    let number = read::<Q>(value)?;
-    match (number, value) {
-        (Some(number), Some(value)) if number <= 0.0 => Err((value.span(), "must be above zero".to_owned())),
-        _ => Ok(number),
-    }
+    read.map(|scalar| scalar.value).map_err(|error| (value.span(), error.message().to_owned()))
 }
 
 /// The largest cosine between what `zero` makes of the axis below and a direction across the axis above.
 const ALONG: f64 = 1e-6;
 
 impl JointTable {
+    fn dry(&self) -> Option<&FrictionTable> {
+        self.friction.as_ref().map(Spanned::get_ref)
+    }
+
     /// Refuses keys that the kind doesn't have.
     fn check(&self) -> Result<(), SpanMessage> {
         let kind = *self.kind.get_ref();
@@ -296,36 +272,29 @@ impl JointTable {
             _ => (),
         }
         let is_slider = kind == Kind::Slider;
-        let of_both = kind.turns() || is_slider;
-        let has = [
-            ("damping", &self.damping, of_both),
-            ("stiffness", &self.stiffness, kind.turns() && kind != Kind::Plane || is_slider),
-            ("rest", &self.rest, kind.turns_about_axis() && kind != Kind::Plane || is_slider),
-            ("torque", &self.torque, kind.turns_about_axis()),
-            ("force", &self.force, is_slider),
-            ("armature", &self.armature, of_both),
-            ("angle", &self.angle, kind.turns_about_axis()),
-            ("rate", &self.rate, kind.turns_about_axis()),
-            ("shift", &self.shift, kind.shifts_along_axis()),
-            ("speed", &self.speed, kind.shifts_along_axis()),
-        ];
-        for (key, value, has) in has {
-            if let (Some(value), false) = (value, has) {
-                let instead = match key {
+        if let Some(friction) = &self.friction {
+            if !kind.turns() && !is_slider {
+                let message = format!("a {name} has no dry `friction`: it is for joints that turn, and for sliders");
+                return refuse(friction.span(), message);
+            }
+            let FrictionTable { torque, force, below } = friction.get_ref();
+            let (own, other) = if is_slider { (force, torque) } else { (torque, force) };
+            if other.is_some() || own.is_none() || below.is_none() {
+                let place = other.as_ref().map_or_else(|| friction.span(), Spanned::span);
+                return refuse(place, FRICTION[usize::from(is_slider)].to_owned());
+            }
+        }
+        for (key, value) in KEYS.iter().filter_map(|key| Some((key, key.2(self)?))) {
+            if key.unit(kind).is_none() {
+                let instead = match key.0 {
                     "torque" if is_slider => "; its motor has a `force`",
                     "force" if kind.turns() => "; a motor that turns has a `torque`",
                     "angle" | "rate" if is_slider => "; it starts at a `shift` with a `speed`",
                     "shift" | "speed" if kind.turns_about_axis() => "; it starts at an `angle` with a `rate`",
                     _ => "",
                 };
-                return refuse(value.span(), format!("a {name} has no `{key}`{instead}"));
+                return refuse(value.span(), format!("a {name} has no `{}`{instead}", key.0));
             }
-        }
-        if let (Some(friction), false) = (&self.friction, of_both) {
-            return refuse(
-                friction.span(),
-                format!("a {name} has no dry `friction`: it is for joints that turn, and for sliders"),
-            );
         }
         if let (Some(limits), false) = (&self.limits, matches!(kind, Kind::Pin | Kind::Slider)) {
             return refuse(limits.span(), format!("a {name} has no `limits`: those of a pin and a slider are watched"));
@@ -365,7 +334,8 @@ impl JointTable {
 
     /// The place of the first of its coordinates at the start, if any is given.
     pub(crate) fn coordinate(&self) -> Option<Range<usize>> {
-        [&self.angle, &self.rate, &self.shift, &self.speed].into_iter().flatten().map(Spanned::span).next()
+        let of_start = KEYS.iter().filter(|key| key.1 as usize >= Number::Angle as usize);
+        of_start.filter_map(|key| key.2(self)).map(Spanned::span).next()
     }
 
     /// The joint; if the second of its bodies is space, with both exchanged.
@@ -374,26 +344,18 @@ impl JointTable {
         let kind = *self.kind.get_ref();
         let axes = self.axes.as_ref().map_or([Vector3::zeros(); 2], |axes| axes.get_ref().map(|axis| axis.0));
         let zero = self.attitude(&axes)?;
-        let is_slider = kind == Kind::Slider;
-        let by_kind =
-            |turn: Result<_, SpanMessage>, shift: Result<_, SpanMessage>| if is_slider { shift } else { turn };
-        let terms = Terms {
-            damping: by_kind(positive::<Damping>(&self.damping), positive::<LinearDamping>(&self.damping))?,
-            stiffness: by_kind(positive::<TurningStiffness>(&self.stiffness), positive::<Stiffness>(&self.stiffness))?,
-            rest: by_kind(read::<Angle>(&self.rest), read::<Length>(&self.rest))?.unwrap_or(0.0),
-            effort: by_kind(read::<Torque>(&self.torque), read::<Force>(&self.force))?,
-            friction: self.friction.map(|one| one.get_ref().friction(one.span(), is_slider)).transpose()?,
-            armature: by_kind(positive::<Inertia>(&self.armature), positive::<Mass>(&self.armature))?,
-        };
-        let start = Coordinates {
-            angle: read::<Angle>(&self.angle)?.unwrap_or(0.0),
-            rate: read::<Rate>(&self.rate)?.unwrap_or(0.0),
-            shift: read::<Length>(&self.shift)?.unwrap_or(0.0),
-            speed: read::<Speed>(&self.speed)?.unwrap_or(0.0),
-        };
+        let mut numbers = [None; NUMBERS];
+        for key in &KEYS {
+            let (Some(value), Some((read, _))) = (key.2(&self), key.unit(kind)) else { continue };
+            let number = read(value)?;
+            if key.4 != Sign::Either && number <= 0.0 {
+                return Err((value.span(), "must be above zero".to_owned()));
+            }
+            numbers[key.1 as usize] = Some(number);
+        }
         let limits = self.limits.map(|limits| {
             let (span, limits) = (limits.span(), limits.into_inner());
-            if is_slider {
+            if kind == Kind::Slider {
                 limits.limits::<Length>(span, f64::INFINITY)
             } else {
                 limits.limits::<Angle>(span, std::f64::consts::TAU)
@@ -402,7 +364,7 @@ impl JointTable {
         let limits = limits.transpose()?;
         let length = self.length.map_or(0.0, |length| length.into_inner().value);
         let at = self.at.map(|point| point.value);
-        let joint = Joint { kind, at, axes, zero, length, terms, limits, start, sign: 1.0 };
+        let joint = Joint { kind, at, axes, zero, length, numbers, limits, sign: 1.0 };
         Ok(if is_swapped { joint.swapped() } else { joint })
     }
 }
@@ -410,29 +372,43 @@ impl JointTable {
 impl Joint {
     /// The joint from the other end: angles, shifts and what acts along them have the opposite sign.
     fn swapped(self) -> Self {
-        let Self { mut at, mut axes, zero, terms, limits, start, .. } = self;
+        let Self { mut at, mut axes, zero, limits, .. } = self;
         at.swap(0, 1);
         axes.swap(0, 1);
-        let Coordinates { angle, rate, shift, speed } = start;
-        let terms = Terms { rest: -terms.rest, effort: terms.effort.map(|effort| -effort), ..terms };
-        let start = Coordinates { angle: -angle, rate: -rate, shift: -shift, speed: -speed };
+        let mut numbers = self.numbers;
+        for (at, number) in numbers.iter_mut().enumerate() {
+            let is_signed = KEYS.iter().any(|key| key.1 as usize == at && key.4 == Sign::Either);
+            *number = number.map(|number| if is_signed { -number } else { number });
+        }
         let limits = limits.map(|limits| Limits { ends: [-limits.ends[1], -limits.ends[0]], ..limits });
-        Self { at, axes, zero: zero.transpose(), terms, limits, start, sign: -self.sign, ..self }
+        Self { at, axes, zero: zero.transpose(), numbers, limits, sign: -self.sign, ..self }
+    }
+
+    /// A number that the file gives.
+    pub(crate) const fn number(&self, number: Number) -> Option<f64> {
+        self.numbers[number as usize]
+    }
+
+    /// Whether the file gives one of these numbers.
+    pub(crate) fn has(&self, numbers: &[Number]) -> bool {
+        numbers.iter().any(|number| self.number(*number).is_some())
+    }
+
+    /// The angle, rad, its rate, the shift, m, and its speed at the start, of bodies without places of their own.
+    pub(crate) fn start(&self) -> [f64; 4] {
+        [Number::Angle, Number::Rate, Number::Shift, Number::Speed].map(|of| self.number(of).unwrap_or(0.0))
     }
 
     /// Sets a value over time, with the sign that the file has; returns whether it can have this number.
-    pub(crate) fn put(&mut self, key: &str, number: f64) -> bool {
-        let (terms, signed) = (&mut self.terms, self.sign * number);
-        let or_off = Some(number).filter(|number| *number >= 0.0);
-        match key {
-            "torque" | "force" => put(terms.effort.as_mut(), Some(signed)),
-            "rest" => put(Some(&mut terms.rest), Some(signed)),
-            "damping" => put(terms.damping.as_mut(), or_off),
-            "stiffness" => put(terms.stiffness.as_mut(), or_off),
-            "friction.torque" => put(terms.friction.as_mut().map(|[torque, _]| torque), or_off),
-            "friction.below" => put(terms.friction.as_mut().map(|[_, below]| below), or_off.filter(|rate| *rate > 0.0)),
-            _ => false,
-        }
+    pub(crate) fn put(&mut self, name: &str, number: f64) -> bool {
+        let of_name = |key: &&Key| key.0 == name && key.may_change() && key.unit(self.kind).is_some();
+        let Some(Key(_, of, .., sign, _)) = KEYS.iter().find(of_name) else { return false };
+        let (can_be, number) = match sign {
+            Sign::Either => (true, self.sign * number),
+            Sign::OrOff => (number >= 0.0, number),
+            Sign::Above => (number > 0.0, number),
+        };
+        put(self.numbers[*of as usize].as_mut(), can_be.then_some(number))
     }
 
     /// The angle about the axis, rad, from −π to π, and the shift along it, m, between bodies in these poses.

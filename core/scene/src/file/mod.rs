@@ -14,6 +14,7 @@ pub(crate) mod event;
 pub(crate) mod group;
 pub(crate) mod histogram;
 pub(crate) mod joint;
+pub(crate) mod joint_kind;
 pub(crate) mod kepler;
 pub(crate) mod key;
 pub(crate) mod kinds;

@@ -89,21 +89,10 @@ fn of_orbit(document: &Document<'_>, file: &SceneFile) -> Option<SpanMessage> {
     if let (None, Some(keys)) = (file.orbit, file.turning().next()) {
         return wrong(&keys, NO_ORBIT.to_owned());
     }
-    if let Some(name) = file.changing() {
-        if let Pace::Accuracy(_) = file.run.pace {
-            let message = format!(
-                "an accuracy chooses a method for what doesn't change with time; {name} does, so give a `step`"
-            );
-            return wrong(&["run", "accuracy"], message);
-        }
-        if !matches!(file.run.method, Scheme::Step | Scheme::Composition(_)) {
-            let message = format!(
-                "{name} changes with time, which a step or a composition can follow; take one, or leave `method` out"
-            );
-            return wrong(&["run", "method"], message);
-        }
-    }
-    None
+    let name = file.changing().filter(|_| !matches!(file.run.method, Scheme::Step | Scheme::Composition(_)))?;
+    let message =
+        format!("{name} changes with time, which a step or a composition can follow; take one, or leave `method` out");
+    wrong(&["run", "method"], message)
 }
 
 /// Conflicts with laws and wheels.

@@ -9,7 +9,7 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer, StrDeserial
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
 use crate::file::kepler::Orbit;
-use crate::file::quantity::{Direction, FluxDensity, PositiveScalar, Quantity, Rate, Scalar, Triple, in_si};
+use crate::file::quantity::{Direction, FluxDensity, PositiveScalar, Quantity, Rate, Scalar, Triple, in_si, si};
 
 /// A time of a scene, s, with its orbit.
 #[derive(Clone, Copy)]
@@ -125,16 +125,8 @@ pub(crate) fn put(place: Option<&mut f64>, value: Option<f64>) -> bool {
     place.zip(value).map(|(place, value)| *place = value).is_some()
 }
 
-/// The SI unit of a quantity.
-const fn si<Q: Quantity>() -> Option<&'static str> {
-    match Q::UNITS {
-        [(unit, _), ..] => Some(unit),
-        [] => None,
-    }
-}
-
 impl<Q: Quantity> Parameter for Scalar<Q> {
-    const UNIT: Option<&'static str> = si::<Q>();
+    const UNIT: Option<&'static str> = Some(si::<Q>());
 
     fn put(&mut self, _: usize, number: f64, unit: &str) -> bool {
         put(Some(&mut self.value), in_si::<Q>(number, unit))
@@ -143,7 +135,7 @@ impl<Q: Quantity> Parameter for Scalar<Q> {
 
 /// Over time zero is a term that is off.
 impl<Q: Quantity> Parameter for PositiveScalar<Q> {
-    const UNIT: Option<&'static str> = si::<Q>();
+    const UNIT: Option<&'static str> = Some(si::<Q>());
 
     fn put(&mut self, _: usize, number: f64, unit: &str) -> bool {
         put(Some(&mut self.value), in_si::<Q>(number, unit).filter(|&number| number >= 0.0))
@@ -151,7 +143,7 @@ impl<Q: Quantity> Parameter for PositiveScalar<Q> {
 }
 
 impl<Q: Quantity> Parameter for Triple<Q> {
-    const UNIT: Option<&'static str> = si::<Q>();
+    const UNIT: Option<&'static str> = Some(si::<Q>());
 
     fn put(&mut self, component: usize, number: f64, unit: &str) -> bool {
         put(self.value.get_mut(component), in_si::<Q>(number, unit))

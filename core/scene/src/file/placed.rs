@@ -3,7 +3,7 @@
 use liestep::SO3;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
-use crate::file::joint::{Coordinates, Joint};
+use crate::file::joint::Joint;
 use crate::file::part::{Between, SystemBody};
 use crate::file::start::Start;
 
@@ -42,7 +42,7 @@ impl Pose {
 
     /// The pose of the body below a joint, where this is that of the body above.
     fn below(&self, joint: &Joint) -> Self {
-        let Coordinates { angle, rate, shift, speed } = joint.start;
+        let [angle, rate, shift, speed] = joint.start();
         let attitude = self.attitude * joint.attitude_at(angle);
         let axis = self.attitude * joint.axes[0];
         let arm = self.attitude * (joint.at[0] + joint.axes[0] * shift);
@@ -54,7 +54,7 @@ impl Pose {
 
     /// The pose of the body above a joint, where this is that of the body below.
     fn above(&self, joint: &Joint) -> Self {
-        let Coordinates { angle, rate, shift, speed } = joint.start;
+        let [angle, rate, shift, speed] = joint.start();
         let attitude = self.attitude * joint.attitude_at(angle).transpose();
         let axis = attitude * joint.axes[0];
         let arm = attitude * (joint.at[0] + joint.axes[0] * shift);

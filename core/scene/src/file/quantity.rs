@@ -17,6 +17,14 @@ pub(crate) trait Quantity {
     const LARGEST_BARE: f64 = f64::INFINITY;
 }
 
+/// The SI unit of a quantity.
+pub(crate) const fn si<Q: Quantity>() -> &'static str {
+    match Q::UNITS {
+        [(unit, _), ..] => unit,
+        [] => "",
+    }
+}
+
 macro_rules! quantities {
     ($($quantity:ident: $name:literal $(up to $most:ident)? in $($unit:literal $size:expr),+;)+) => {$(
         #[derive(Clone, Copy)]

@@ -228,6 +228,11 @@ impl SceneFile {
         turning.or_else(|| self.over_time.first().map(OverTime::subject))
     }
 
+    /// Whether each step has numbers of its own: by laws, wheels, or what changes with time.
+    pub(crate) fn is_driven(&self) -> bool {
+        self.has_devices() || self.changing().is_some()
+    }
+
     /// Sets all parameters over time to their means over a step of this start and length, s; at a time by the length 0.
     /// Returns whether each has a value.
     pub(crate) fn set_over(&mut self, span: [f64; 2]) -> bool {

@@ -9,7 +9,8 @@ use toml::Spanned;
 use crate::file::column::Column;
 use crate::file::effects::EffectEntry;
 use crate::file::event::{Event, Quantity};
-use crate::file::joint::{Joint, Kind, Limits};
+use crate::file::joint::{Joint, Limits, Number};
+use crate::file::joint_kind::Kind;
 use crate::file::mistake::SpanMessage;
 use crate::file::orbit::put;
 use crate::file::part::{Between, SystemBody};
@@ -33,7 +34,7 @@ use crate::file::tables::Document;
 /// | `gravity_gradient` | as for [one body](crate::SceneFile): it pulls on the inertia of each body, and on its mass away from the origin |
 /// | `[[wheel]]`, `[[control]]`, `[[pointing]]` | as for [one body](crate::SceneFile), with the name of their `body` |
 /// | `[[event]]` | as for [one body](crate::SceneFile), with the name of its `body`; or with an `energy`, or a `column` of the table and its `value`: `upper_z`, `joint-1_angle` |
-/// | `run` | `duration`; `step` or `accuracy` as for [one body](crate::SceneFile): without friction the cheapest of the step and its compositions is chosen, and with friction a step; `method`: `step`, or a `composition` by its name, of systems without friction; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
+/// | `run` | `duration`; `step` or `accuracy` as for [one body](crate::SceneFile): the cheapest of the step and its compositions is chosen, also beside numbers over time, and with friction in joints a step; `method`: `step`, or a `composition` by its name, of systems without friction in joints; `nearest`: whether joints that are open at the start are closed: positions and their velocities are corrected first, then attitudes and angular velocities by as little as possible |
 /// | `picture` | `plane`: `xy`, `xz`, `yz`; by default the plane in which the motion is the widest; `panels` as for [one body](crate::SceneFile), by default `turns` and `energy-error`, and the `axis` of `tilt` |
 /// | `output` | `columns` that follow the time in a table, see [`Column`]; `every`: the number of steps from row to row |
 /// | `sweep`, `ensemble` | as for [one body](crate::SceneFile): the key of a body, a joint, a spring or an event follows its name, `joint.elbow.damping`, `spring.spring-1.k`; an ensemble draws keys of `body`, `gravity`, `joint`, `spring`, `orbit`, `control`, `wheel` and `pointing` |
@@ -115,7 +116,7 @@ impl System {
         let arm = |(body, at): (Option<usize>, Vector3<f64>)| body.map_or(0.0, |_| at.norm());
         let of_joint = |Between { bodies, of }: &Between<Joint>| {
             let [one, other] = [0, 1].map(|side| arm((bodies[side], of.at[side])));
-            [one, other, of.length, of.start.shift.abs()]
+            [one, other, of.length, of.number(Number::Shift).unwrap_or(0.0).abs()]
         };
         let of_spring = |Between { bodies, of }: &Between<Spring>| {
             let [one, other] = [0, 1].map(|side| arm((bodies[side], of.at[side])));
@@ -142,24 +143,19 @@ impl System {
         columns.iter().any(|column| is_reaction(&column)) || events.iter().any(is_seen)
     }
 
-    /// The effects on bodies, each with its body.
-    pub(crate) fn effects(&self) -> impl Iterator<Item = (&SystemBody, &'static EffectEntry)> {
-        self.bodies.iter().flat_map(|body| body.effects.iter().map(move |(entry, _)| (body, *entry)))
+    /// The effects on bodies.
+    pub(crate) fn effects(&self) -> impl Iterator<Item = &'static EffectEntry> {
+        self.bodies.iter().flat_map(|body| &body.effects).map(|(entry, _)| *entry)
     }
 
-    /// The reason why a step has none back that undoes it.
+    /// The reason against steps back, which turn friction in a joint into its opposite.
     pub(crate) fn one_way(&self) -> Option<String> {
-        let has_friction =
-            |joint: &Between<Joint>| joint.of.terms.damping.is_some() || joint.of.terms.friction.is_some();
-        if let Some(joint) = self.joints.iter().position(has_friction) {
-            return Some(format!(
-                "a composition has steps back, in which friction adds energy, and `{}` has some: leave one of both out",
-                self.joint_names[joint]
-            ));
-        }
-        let (body, effect) = self.effects().find(|(_, effect)| effect.does_work())?;
-        let (effect, body) = (effect.name(" "), &body.name);
-        Some(format!("a composition needs a conservative scene; {effect} of `{body}` does work"))
+        let has_friction = |joint: &Between<Joint>| joint.of.has(&[Number::Damping, Number::Friction]);
+        let joint = self.joints.iter().position(has_friction)?;
+        Some(format!(
+            "a composition has steps back, in which friction adds energy, and `{}` has some: leave one of both out",
+            self.joint_names[joint]
+        ))
     }
 
     /// Whether gaps of joints are cosines in part.
@@ -174,7 +170,7 @@ impl System {
             1 => Some(format!("1 {one}")),
             count => Some(format!("{count} {several}")),
         };
-        let mut effects: Vec<_> = self.effects().map(|(_, effect)| effect.name(" ")).collect();
+        let mut effects: Vec<_> = self.effects().map(|effect| effect.name(" ")).collect();
         effects.sort_unstable();
         effects.dedup();
         let gravity = self.gravity.map(|_| "gravity".to_owned());

@@ -12,14 +12,15 @@ use liestep::effects::{Rotor, Torque};
 use liestep::groups::R3;
 use liestep::mechanics::Inertia;
 use liestep::methods::{Multibody, MultibodyStepper, Redundancy};
-use liestep::motion::{Layout, Propagator, StepReport};
+use liestep::motion::{Cost, Layout, Propagator, StepReport};
 use liestep::with::Scheme;
 use liestep::{NonstandardInertia, SO3, SetupError, StepError, lagrangian};
 use nalgebra::{Vector3, Vector6};
 
 use crate::file::body::Kinetic;
 use crate::file::control::locked;
-use crate::file::joint::{Joint, Kind};
+use crate::file::joint::{Joint, Number};
+use crate::file::joint_kind::Kind;
 use crate::file::orbit::Time;
 use crate::file::part::{Between, SystemBody};
 use crate::file::scene::SceneFile;
@@ -123,8 +124,8 @@ pub(crate) struct Tide {
 }
 
 impl System {
-    /// The bodies with their joints and springs, and the functions of joints that the others imply at the start, which are left out.
-    fn joined(&self) -> Result<(Multibody, Vec<Redundancy>), SetupError> {
+    /// The bodies with their joints and springs.
+    fn parts(&self) -> Multibody {
         let (g, up) = self.gravity.unwrap_or((0.0, Vector3::z()));
         let mut system = Multibody::new();
         for body in &self.bodies {
@@ -148,8 +149,7 @@ impl System {
             system.join(joint.constraint(), above, below);
             add_terms(&mut system, [above, Some(below)], &joint);
         }
-        let places: Vec<_> = self.given().into_iter().map(|(place, _)| place).collect();
-        system.independent(&places)
+        system
     }
 
     /// Adds what acts on the bodies of a file at a time, with what is held.
@@ -195,7 +195,8 @@ impl System {
         method: Scheme,
         step: f64,
     ) -> Result<(MultibodyStepper, Vec<Redundancy>), SetupError> {
-        let (mut system, left_out) = self.joined()?;
+        let places: Vec<_> = self.given().into_iter().map(|(place, _)| place).collect();
+        let (mut system, left_out) = self.parts().independent(&places)?;
         self.act(file, &mut system, file.at(0.0), &[])?;
         let stepper = system.stepper(step)?;
         let stepper = if let Scheme::Composition(scheme) = method { stepper.composed(scheme)? } else { stepper };
@@ -229,39 +230,40 @@ impl System {
 
 /// Adds the springs, the friction, the motor and its rotor of a joint.
 fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) {
-    let Joint { kind, at, axes, terms, .. } = *joint;
+    let (Joint { kind, at, axes, .. }, of) = (*joint, |number| joint.number(number));
+    let (rest, friction) = (of(Number::Rest).unwrap_or(0.0), of(Number::Friction).zip(of(Number::Below)));
     if kind == Kind::Slider {
         let axis = axes[0];
-        if terms.has_spring() {
+        if joint.has(&[Number::Stiffness, Number::Effort]) {
             // The shift is between the points of both bodies, that of the term from the first body's centre.
-            let (k, rest) = (terms.stiffness.unwrap_or(0.0), terms.rest + axis.dot(&at[0]));
-            system.between(bodies, SliderSpring { k, rest, force: terms.effort.unwrap_or(0.0), axis, at_2: at[1] });
+            let (k, force) = (of(Number::Stiffness).unwrap_or(0.0), of(Number::Effort).unwrap_or(0.0));
+            system.between(bodies, SliderSpring { k, rest: rest + axis.dot(&at[0]), force, axis, at_2: at[1] });
         }
-        if let Some(c) = terms.damping {
+        if let Some(c) = of(Number::Damping) {
             system.between(bodies, SliderDamping { c, axis });
         }
-        if let Some([force, speed]) = terms.friction {
+        if let Some((force, speed)) = friction {
             system.between(bodies, SliderFriction { force, speed, axis });
         }
-        if let Some(a) = terms.armature {
+        if let Some(a) = of(Number::Armature) {
             system.between(bodies, SliderArmature { a, axis, at_2: at[1] });
         }
         return;
     }
-    if let Some(k) = terms.stiffness {
-        system.between(bodies, JointSpring { k, rest: joint.attitude_at(terms.rest) });
+    if let Some(k) = of(Number::Stiffness) {
+        system.between(bodies, JointSpring { k, rest: joint.attitude_at(rest) });
     }
-    if let Some(torque) = terms.effort {
+    if let Some(torque) = of(Number::Effort) {
         let [axis_1, axis_2] = [axes[0], joint.zero.tr_mul(&axes[0])];
         system.between(bodies, JointTorque { torque, axis_1, axis_2 });
     }
-    if let Some(c) = terms.damping {
+    if let Some(c) = of(Number::Damping) {
         system.between(bodies, JointDamping { c });
     }
-    if let Some([torque, rate]) = terms.friction {
+    if let Some((torque, rate)) = friction {
         system.between(bodies, DryFriction { torque, rate });
     }
-    if let Some(a) = terms.armature {
+    if let Some(a) = of(Number::Armature) {
         system.between(bodies, Armature { a });
     }
 }
@@ -271,8 +273,8 @@ pub(crate) struct Bodies {
     /// The file, whose values over time are those of the last step.
     file: RefCell<SceneFile>,
     /// The bodies with joints and springs; none where these or gravity change with time.
-    joined: Option<Multibody>,
-    /// The stepper at the time zero.
+    parts: Option<Multibody>,
+    /// The stepper at the time zero, whose joints are those of all.
     first: MultibodyStepper,
     /// The last stepper, with its time and what was held.
     last: RefCell<Option<LastStepper>>,
@@ -287,8 +289,8 @@ impl Bodies {
         let (first, _) = system.multibody(file, Scheme::Step, h)?;
         let is_constant =
             !file.over_time.iter().any(|one| ["joint", "spring", "gravity"].contains(&one.table.as_str()));
-        let joined = is_constant.then(|| system.joined()).transpose()?.map(|(joined, _)| joined);
-        Ok(Self { file: RefCell::new(file.clone()), joined, first, last: RefCell::default() })
+        let parts = is_constant.then(|| system.parts());
+        Ok(Self { file: RefCell::new(file.clone()), parts, first, last: RefCell::default() })
     }
 }
 
@@ -309,9 +311,10 @@ impl Mechanism for Bodies {
         let mut file = self.file.borrow_mut();
         let is_known = file.set_over([start, length]);
         let of_file = file.system.as_ref().filter(|_| is_known)?;
-        let mut system = self.joined.clone().map_or_else(|| of_file.joined().map(|(joined, _)| joined), Ok).ok()?;
+        let mut system = self.parts.clone().unwrap_or_else(|| of_file.parts());
         of_file.act(&file, &mut system, file.at(start + length * 0.5), held).ok()?;
-        let stepper = Rc::new(system.stepper(if length == 0.0 { self.first.step_size() } else { length }).ok()?);
+        let length_of_step = if length == 0.0 { self.first.step_size() } else { length };
+        let stepper = Rc::new(self.first.with(system, length_of_step).ok()?);
         *last = Some(([start, length], held.to_vec(), Rc::clone(&stepper)));
         Some(stepper)
     }
@@ -329,13 +332,18 @@ impl Mechanism for Bodies {
         &self,
         _: usize,
         stepper: &Rc<MultibodyStepper>,
-        _: f64,
+        length: f64,
         state: &mut Vec<f64>,
     ) -> Result<StepReport, StepError> {
-        let mut next = stepper.adopt(state);
-        let report = stepper.step(&mut next)?;
-        *state = next.into();
-        Ok(report)
+        // The memory of a state is that of equal steps.
+        if length.to_bits() != self.first.step_size().to_bits() {
+            *state = stepper.adopt(state).into();
+        }
+        stepper.step(state)
+    }
+
+    fn forget(&self, state: &mut Vec<f64>) {
+        *state = self.first.adopt(state).into();
     }
 
     fn velocity(&self, stepper: &Rc<MultibodyStepper>, state: &[f64]) -> Vec<f64> {
@@ -366,6 +374,10 @@ impl Mechanism for Bodies {
 
     fn gap(&self, state: &[f64]) -> f64 {
         self.first.widest_gap(state)
+    }
+
+    fn cost(&self) -> Option<Cost> {
+        self.first.cost()
     }
 
     fn joint_forces(&self, stepper: &Rc<MultibodyStepper>, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {

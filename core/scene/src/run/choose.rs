@@ -1,11 +1,13 @@
 //! The stepper of one body, or of a Lagrangian of the file's own, by its method and step.
 
+use std::rc::Rc;
+
 use liestep::SetupError;
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::mechanics::Inertia;
 use liestep::motion::{AnyStepper, Integrator as _};
 use liestep::with::{Clock, Method, Scheme};
-use liestep_late::{Question, QuestionError, for_accuracy};
+use liestep_late::{Course, Question, QuestionError, for_accuracy};
 
 use crate::file::effects::{RotorTable, TorqueTable};
 use crate::file::lagrangian::Backend;
@@ -23,7 +25,7 @@ use crate::run::parameters::{OneBody, Parameters};
 pub(crate) fn whole(file: &SceneFile) -> Option<Whole> {
     let is_of_one_kind =
         matches!(file.run.method, Scheme::Step) && !file.has_steps_of_its_own() && file.system.is_none();
-    let J = inertia(file).ok().filter(|_| is_of_one_kind && file.changing().is_none() && !file.has_devices())?;
+    let J = inertia(file).ok().filter(|_| is_of_one_kind && !file.is_driven())?;
     let Pace::Step { step, .. } = file.run.pace else { return None };
     let Data { sum, numbers } = Data::of(file, &J).ok()?;
     Whole::of(sum, &numbers, step, Method::default()).ok()
@@ -63,7 +65,7 @@ fn with_devices(file: &SceneFile, J: Inertia, h: f64) -> Result<AnyStepper, Stop
     }
     let Data { sum, numbers } = Data::of(&file, &J)?;
     let whole = Whole::of(sum, &numbers, h, Method::default()).map_err(whole_error)?;
-    let shares = shares(&file);
+    let shares = shares(file.run.method);
     if shares.len() > 1 && !sum.is_self_adjoint {
         return Err(Stop::Setup(SetupError::NotSelfAdjoint));
     }
@@ -77,8 +79,8 @@ pub(crate) fn clock(file: &SceneFile) -> Option<Clock> {
 }
 
 /// The lengths of the stages of a step, as shares of it.
-pub(crate) fn shares(file: &SceneFile) -> Vec<f64> {
-    match file.run.method {
+pub(crate) fn shares(method: Scheme) -> Vec<f64> {
+    match method {
         Scheme::Composition(scheme) => scheme.stages().collect(),
         _ => vec![1.0],
     }
@@ -113,12 +115,14 @@ pub(crate) fn by_steps(file: &SceneFile, h: f64) -> Result<AnyStepper, Stop> {
 
 /// The cheapest choice of method and step for an accuracy.
 pub(crate) fn searched(file: &SceneFile, accuracy: Accuracy) -> Result<Choice, Stop> {
-    let data = Data::of(file, &inertia(file)?)?;
+    let J = inertia(file)?;
+    let data = Data::of(file, &J)?;
     let stepper = data.stepper(Method::default(), accuracy.horizon).map_err(whole_error)?;
     let state = file.start.state(&stepper).map_err(Stop::Start)?;
     let velocity = if file.start.is_by_momentum { stepper.velocity(&state) } else { file.start.velocity.clone() };
     let question = Question { accuracy, attitude: &file.start.attitude, velocity: &velocity };
-    match for_accuracy::<Backend>(data.sum, &data.numbers, question) {
+    let parameters = file.changing().map(|_| Rc::new(Parameters::of(file.clone(), J, data.sum)));
+    match for_accuracy::<Backend>(data.sum, &data.numbers, parameters.map(|all| all as Rc<dyn Course>), question) {
         Ok((_, choice)) => Ok(choice),
         Err(QuestionError::Whole(error)) => Err(whole_error(error)),
         Err(QuestionError::Accuracy(error)) => Err(Stop::Accuracy(error)),

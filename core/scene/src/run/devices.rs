@@ -1,7 +1,7 @@
 //! Steps of bodies with laws and wheels, and of several bodies along an orbit: torques that are sampled and held, momenta that
 //! wheels exchange with their bodies, and parameters over time.
 
-use liestep::motion::{Layout, Propagator, StepReport};
+use liestep::motion::{Cost, Layout, Propagator, StepReport};
 use liestep::with::Clock;
 use liestep::{SetupError, StepError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
@@ -31,7 +31,7 @@ pub(crate) trait Mechanism {
 
     fn start(&self, numbers: &Self::Numbers, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError>;
 
-    /// Makes a stage of a step, of this length, s; the memory of the state is that of a new start.
+    /// Makes a stage of a step, of this length, s.
     fn step(
         &self,
         stage: usize,
@@ -39,6 +39,9 @@ pub(crate) trait Mechanism {
         length: f64,
         state: &mut Vec<f64>,
     ) -> Result<StepReport, StepError>;
+
+    /// Gives a state the memory of a new start.
+    fn forget(&self, _state: &mut Vec<f64>) {}
 
     fn velocity(&self, numbers: &Self::Numbers, state: &[f64]) -> Vec<f64>;
 
@@ -58,6 +61,11 @@ pub(crate) trait Mechanism {
 
     fn gap(&self, _state: &[f64]) -> f64 {
         0.0
+    }
+
+    /// The operations of a stage.
+    fn cost(&self) -> Option<Cost> {
+        None
     }
 
     fn joint_forces(&self, _: &Self::Numbers, _state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
@@ -88,6 +96,12 @@ const MOST_ROUNDS: u32 = 200;
 const OF_A_LAW: StepError = StepError::NonFinite { what: "torque of a law" };
 const OF_A_SIGNAL: StepError = StepError::NonFinite { what: "value over time" };
 
+/// The number of steps of a state.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number
+fn steps(state: &[f64]) -> u64 {
+    state.last().map_or(0, |steps| *steps as u64)
+}
+
 impl<M: Mechanism> Devices<M> {
     /// The stepper of a file with a mechanism of this many bodies, with stages of these shares of a step of `h`, s, or of the
     /// lengths of a clock.
@@ -105,10 +119,9 @@ impl<M: Mechanism> Devices<M> {
     }
 
     /// The length of the step ahead of a state, or of that behind it, s; NaN for a slice that is no state.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a number of steps
     fn step_at(&self, state: &[f64], is_ahead: bool) -> f64 {
         let Some(clock) = &self.clock else { return self.h };
-        let steps = state.last().map_or(0, |steps| *steps as u64);
+        let steps = steps(state);
         let length = if is_ahead { clock.length(steps) } else { clock.length_before(steps) };
         length.unwrap_or(f64::NAN)
     }
@@ -295,6 +308,9 @@ impl<M: Mechanism> Devices<M> {
     /// The memory of a state with the samples of a step of this length, s, and the torques of the motors in it.
     fn sampled(&self, state: &[f64], length: f64) -> Result<(Vec<f64>, Memory, Vec<f64>), StepError> {
         let (inner, mut memory) = self.parts(state);
+        if !self.file.has_devices() {
+            return Ok((inner, memory, Vec::new()));
+        }
         let velocity = self.rates(state, (&inner, &memory));
         if length > 0.0 && memory.part == 0.0 {
             self.sample(state, &mut memory, &velocity)?;
@@ -387,6 +403,7 @@ impl<M: Mechanism> Propagator for Devices<M> {
             return Ok(self.layout.checked(state)?.into());
         }
         let (mut next, mut memory, _) = self.advance(self.layout.checked(state)?, length)?;
+        self.mechanism.forget(&mut next);
         let last = next.len() - 1;
         next[last] = state[state.len() - 1];
         memory.part += length;
@@ -425,6 +442,12 @@ impl<M: Mechanism> Propagator for Devices<M> {
         found().unwrap_or_else(nowhere)
     }
 
+    #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)] // a count of stages
+    fn cost(&self) -> Option<Cost> {
+        let (stages, Cost { step, fewest, .. }) = (self.shares.len(), self.mechanism.cost()?);
+        Some(Cost { step: step * stages as f64, fewest: fewest * stages as u32, ..self.mechanism.cost()? })
+    }
+
     fn step_size(&self) -> f64 {
         self.h
     }
@@ -434,8 +457,7 @@ impl<M: Mechanism> Propagator for Devices<M> {
             let last = state.len() - 1;
             let begin = match &self.clock {
                 None => self.h * state[last],
-                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a number of steps
-                Some(clock) => clock.time(state[last] as u64),
+                Some(clock) => clock.time(steps(state)),
             };
             begin + state[last - 1]
         })

@@ -3,7 +3,8 @@
 use liestep::motion::AnyMotion;
 use nalgebra::{Matrix3, Vector3};
 
-use crate::file::joint::{Joint, Kind, Pose};
+use crate::file::joint::{Joint, Pose};
+use crate::file::joint_kind::Kind;
 use crate::file::part::Between;
 use crate::file::system::System;
 

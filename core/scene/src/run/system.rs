@@ -118,18 +118,15 @@ fn left_out_of(one: &Redundancy) -> String {
 impl System {
     /// The stepper of a file by its method and a step, s, at the start.
     pub(crate) fn begun(self: &Arc<Self>, file: &SceneFile, step: f64) -> Result<Begun, Stop> {
-        let is_driven = file.has_devices() || file.changing().is_some();
-        let method = if is_driven { Scheme::Step } else { file.run.method };
+        let method = if file.is_driven() { Scheme::Step } else { file.run.method };
         let (stepper, left_out) = self.multibody(file, method, step).map_err(Stop::Setup)?;
         let state = self.start(&stepper, file.run.nearest).map_err(Stop::Start)?;
         let places: Vec<_> = (0..self.bodies.len()).map(|body| stepper.attitude(&state, body)).collect();
         let of_springs = self.stiffest(file).check_springs(&places, file.run.given_step().map(|_| step))?;
-        let start = if is_driven {
+        let start = if file.is_driven() {
             let (layout, mut velocity) = (stepper.layout(), vec![0.0; stepper.layout().components()]);
             Propagator::velocity(&stepper, &state, &mut velocity);
-            let bodies = Bodies::new(file, self, step).map_err(Stop::Setup)?;
-            let driven = Devices::new(file.clone(), (bodies, self.bodies.len()), (step, clock(file), shares(file)));
-            let any = AnyStepper::new(driven.map_err(Stop::Setup)?);
+            let any = self.any(file, file.run.method, step).map_err(Stop::Setup)?;
             let state = any.start(&state[layout.attitude()], &velocity).map_err(Stop::Start)?;
             (any, state)
         } else {
@@ -143,8 +140,17 @@ impl System {
         Ok(Begun { start, notes: left_out.chain(of_springs).chain(fast).collect() })
     }
 
+    /// The stepper of a file by a method and a step, s.
+    fn any(self: &Arc<Self>, file: &SceneFile, method: Scheme, step: f64) -> Result<AnyStepper, SetupError> {
+        if !file.is_driven() {
+            return self.multibody(file, method, step).map(|(stepper, _)| AnyStepper::new(stepper));
+        }
+        let bodies = (Bodies::new(file, self, step)?, self.bodies.len());
+        Devices::new(file.clone(), bodies, (step, clock(file), shares(method))).map(AnyStepper::new)
+    }
+
     /// The cheapest choice of method and step for an accuracy.
-    pub(crate) fn searched(&self, file: &SceneFile, accuracy: Accuracy) -> Result<Choice, Stop> {
+    pub(crate) fn searched(self: &Arc<Self>, file: &SceneFile, accuracy: Accuracy) -> Result<Choice, Stop> {
         // Attitudes and velocities at the start don't depend on the step.
         let (stepper, _) = self.multibody(file, Scheme::Step, accuracy.horizon / 1024.0).map_err(Stop::Setup)?;
         let state = self.start(&stepper, file.run.nearest).map_err(Stop::Start)?;
@@ -152,9 +158,8 @@ impl System {
         let mut velocity = vec![0.0; layout.components()];
         Propagator::velocity(&stepper, &state, &mut velocity);
         let candidate = |scheme| {
-            let (system, file) = (self.clone(), file.clone());
-            let make = move |h| Ok(AnyStepper::new(system.multibody(&file, scheme, h)?.0));
-            Candidate { scheme, make: Box::new(make) }
+            let (system, file) = (Arc::clone(self), file.clone());
+            Candidate { scheme, make: Box::new(move |h| system.any(&file, scheme, h)) }
         };
         let has_steps_back = self.one_way().is_none();
         let candidates: Vec<_> = of_any_group(has_steps_back).map(candidate).collect();

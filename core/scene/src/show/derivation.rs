@@ -9,7 +9,8 @@ use liestep::mechanics::Effect;
 use liestep_late::{Declaration, LateError};
 
 use crate::file::effects::{EFFECTS, EffectEntry};
-use crate::file::joint::{Joint, Kind};
+use crate::file::joint::{Joint, Number};
+use crate::file::joint_kind::Kind;
 use crate::file::kinds::Scene;
 use crate::file::scene::SceneFile;
 use crate::file::system::System;
@@ -175,28 +176,30 @@ impl System {
     /// The derivation of a body, the terms of springs and of joints, and the constraints of joints.
     fn derivation(&self, file: &SceneFile) -> String {
         let gravity = if self.gravity.is_some() { "" } else { "without gravity, g = 0\n" };
-        let has = |is_long: bool| self.springs.iter().any(|spring| (spring.of.length != 0.0) == is_long);
-        let springs = if has(true) { Coil::DERIVATION } else { "" };
-        let cords = if has(false) { Cord::DERIVATION } else { "" };
+        let coils = |is_long: bool| self.springs.iter().any(|spring| (spring.of.length != 0.0) == is_long);
+        let springs = if coils(true) { Coil::DERIVATION } else { "" };
+        let cords = if coils(false) { Cord::DERIVATION } else { "" };
         let any = |is: &dyn Fn(&Joint) -> bool| self.joints.iter().any(|joint| is(&joint.of));
-        let slides = |joint: &Joint| joint.kind == Kind::Slider;
+        let has = |slides: bool, numbers: &[Number]| {
+            any(&|joint| (joint.kind == Kind::Slider) == slides && joint.has(numbers))
+        };
         let terms = [
-            (JointSpring::DERIVATION, any(&|joint| !slides(joint) && joint.terms.stiffness.is_some())),
-            (JointTorque::DERIVATION, any(&|joint| !slides(joint) && joint.terms.effort.is_some())),
-            (JointDamping::DERIVATION, any(&|joint| !slides(joint) && joint.terms.damping.is_some())),
-            (DryFriction::DERIVATION, any(&|joint| !slides(joint) && joint.terms.friction.is_some())),
-            (Armature::DERIVATION, any(&|joint| !slides(joint) && joint.terms.armature.is_some())),
-            (SliderSpring::DERIVATION, any(&|joint| slides(joint) && joint.terms.has_spring())),
-            (SliderDamping::DERIVATION, any(&|joint| slides(joint) && joint.terms.damping.is_some())),
-            (SliderFriction::DERIVATION, any(&|joint| slides(joint) && joint.terms.friction.is_some())),
-            (SliderArmature::DERIVATION, any(&|joint| slides(joint) && joint.terms.armature.is_some())),
+            (JointSpring::DERIVATION, has(false, &[Number::Stiffness])),
+            (JointTorque::DERIVATION, has(false, &[Number::Effort])),
+            (JointDamping::DERIVATION, has(false, &[Number::Damping])),
+            (DryFriction::DERIVATION, has(false, &[Number::Friction])),
+            (Armature::DERIVATION, has(false, &[Number::Armature])),
+            (SliderSpring::DERIVATION, has(true, &[Number::Stiffness, Number::Effort])),
+            (SliderDamping::DERIVATION, has(true, &[Number::Damping])),
+            (SliderFriction::DERIVATION, has(true, &[Number::Friction])),
+            (SliderArmature::DERIVATION, has(true, &[Number::Armature])),
         ];
         let terms: String = terms.into_iter().filter_map(|(text, is_there)| is_there.then_some(text)).collect();
         let balls = if any(&|joint| joint.kind.has_one_point()) { BALLS } else { "" };
         let kinds = Kind::ALL.into_iter().filter(|kind| any(&|joint| joint.kind == *kind)).map(constraints);
         let kinds: String = kinds.collect();
         let is_used = |one: &&EffectEntry| {
-            let mut used = self.effects().map(|(_, effect)| effect).chain(file.effects().map(|(effect, _)| effect));
+            let mut used = self.effects().chain(file.effects().map(|(effect, _)| effect));
             used.any(|effect| effect.key == one.key)
         };
         let effects: String = EFFECTS.iter().filter(is_used).map(|effect| effect.derived.0).collect();

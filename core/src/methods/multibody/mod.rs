@@ -24,6 +24,7 @@
 //! link of a chain takes 1.8 to 2.5 times the instructions of one of a [`Chain`](crate::methods::Chain), which has half the unknowns
 //! and no momenta to project; the bench `systems` has both.
 
+mod anew;
 mod ball;
 mod balls;
 mod composed;

@@ -50,13 +50,15 @@ pub struct MultibodyStepper {
     pub(super) system: Multibody,
     /// The terms of each body.
     pub(super) ranges: Vec<Range<usize>>,
-    pub(super) tree: Tree,
+    pub(super) tree: Arc<Tree>,
     /// The joints some of whose functions are left out.
     pub(super) reduced: Vec<usize>,
     /// The terms that couple bodies within a step.
     pub(super) couplings: Vec<Coupling>,
     /// The bodies without joints: the order in which inertias are eliminated.
-    pub(super) free: Tree,
+    pub(super) free: Arc<Tree>,
+    /// The inertia of each body at the origin.
+    inertias: Vec<Matrix6<f64>>,
     /// The radius of gyration of each body, m, by which rotations are compared with translations.
     pub(super) lengths: Vec<f64>,
     /// Whether all joints are balls in trees: then momenta are projected for who reads them, and no step needs it.
@@ -99,6 +101,12 @@ impl Multibody {
     /// bodies; [`SetupError::Joint`] and [`SetupError::JointParameter`] name an invalid joint, [`SetupError::Place`] a
     /// term at a body that there isn't.
     pub fn stepper(self, h: f64) -> Result<MultibodyStepper, SetupError> {
+        self.check_terms()?;
+        MultibodyStepper::of(self.with_point_masses(), h, None)
+    }
+
+    /// Checks the places and the parameters of all terms.
+    pub(super) fn check_terms(&self) -> Result<(), SetupError> {
         self.check_places()?;
         for (body, term) in &self.terms {
             term.validate().map_err(|error| match error {
@@ -108,14 +116,13 @@ impl Multibody {
                 error => error,
             })?;
         }
-        self.pairs.iter().try_for_each(|(_, term)| term.validate())?;
-        MultibodyStepper::of(self.with_point_masses(), h)
+        self.pairs.iter().try_for_each(|(_, term)| term.validate())
     }
 }
 
 impl MultibodyStepper {
-    /// The stepper of a system whose parameters are valid.
-    pub(super) fn of(mut system: Multibody, h: f64) -> Result<Self, SetupError> {
+    /// The stepper of a system whose parameters are valid; what is known from a stepper with the same joints isn't found again.
+    pub(super) fn of(mut system: Multibody, h: f64, known: Option<&Self>) -> Result<Self, SetupError> {
         // 1/h and the constants that depend on it must be finite, unless h is zero.
         if !h.is_finite() || !(h == 0.0 || (1.0 / h).is_finite()) {
             return Err(SetupError::InvalidStep { step: h });
@@ -124,15 +131,20 @@ impl MultibodyStepper {
         system.terms.sort_by_key(|(body, _)| *body);
         let pairs = system.pairs.iter().map(|(bodies, term)| (bodies, term.has_unknown()));
         let (couplings, coupled) = couplings(pairs);
-        let tree = Tree::of(&system.joints, system.bodies, coupled)?;
-        let free = tree.without_joints();
+        let (tree, free) = if let Some(known) = known.filter(|known| known.tree.couplings == coupled) {
+            (Arc::clone(&known.tree), Arc::clone(&known.free))
+        } else {
+            let tree = Tree::of(&system.joints, system.bodies, coupled)?;
+            let free = tree.without_joints();
+            (Arc::new(tree), Arc::new(free))
+        };
         let is_reduced = |joined: &Joint| joined.functions.gap_of_all(&Place::SPACE, &Place::SPACE).is_some();
         let reduced =
             system.joints.iter().enumerate().filter(|(_, joined)| is_reduced(joined)).map(|(k, _)| k).collect();
         let place = |body: usize| system.terms.partition_point(|(of, _)| *of < body);
         let ranges = (0..system.bodies).map(|body| place(body)..place(body + 1)).collect();
         let (layout, offsets, stages) = (layout(system.bodies, 1), Offsets::of(system.bodies, 1), None);
-        let (lengths, has_point_masses) = (Vec::new(), false);
+        let (inertias, lengths, has_point_masses) = (Vec::new(), Vec::new(), false);
         let is_open = tree.are_balls(&system.joints);
         let mut stepper = Self {
             h,
@@ -142,6 +154,7 @@ impl MultibodyStepper {
             reduced,
             couplings,
             free,
+            inertias,
             lengths,
             is_open,
             has_point_masses,
@@ -150,18 +163,28 @@ impl MultibodyStepper {
             offsets,
         };
         let at_origin = alloc::vec![space(); stepper.bodies()];
-        stepper.check_inertias(&at_origin)?;
-        stepper.has_point_masses = (0..stepper.bodies()).any(|body| is_point_mass(&stepper.at_rest(body, &space()).2));
-        stepper.lengths = stepper.limit(&at_origin).matrices.iter().map(length).collect();
+        stepper.inertias = stepper.limit(&at_origin).matrices;
+        let known = known.filter(|known| known.inertias == stepper.inertias);
+        if let Some(known) = known {
+            (stepper.lengths, stepper.has_point_masses) = (known.lengths.clone(), known.has_point_masses);
+        } else {
+            stepper.check_inertias(&at_origin)?;
+            stepper.has_point_masses =
+                (0..stepper.bodies()).any(|body| is_point_mass(&stepper.at_rest(body, &space()).2));
+            stepper.lengths = stepper.inertias.iter().map(length).collect();
+        }
+        if h == 0.0 {
+            return Ok(stepper);
+        }
+        let refolded = stepper.system.refolded(h);
         // Some constants aren't finite for any step.
-        if h != 0.0 && !stepper.system.refolded(h).is_finite() && !stepper.system.is_finite() {
+        if !refolded.is_finite() && !stepper.system.is_finite() {
             return Err(SetupError::NonFiniteConstant);
         }
-        if h != 0.0 {
-            stepper.system = stepper.system.refolded(h);
-            if !(stepper.trace() / h).is_finite() {
-                return Err(SetupError::InvalidStep { step: h });
-            }
+        stepper.system = refolded;
+        let is_possible = known.is_some_and(|known| known.h.to_bits() == h.to_bits());
+        if !is_possible && !(stepper.trace() / h).is_finite() {
+            return Err(SetupError::InvalidStep { step: h });
         }
         Ok(stepper)
     }
@@ -406,16 +429,6 @@ impl MultibodyStepper {
     /// The configurations of both ends of a term between two bodies.
     pub(super) fn ends<'a>(&self, pair: usize, all: &'a [Body], space: &'a Body) -> [&'a Body; 2] {
         ends(&self.system.pairs[pair].0, all, space)
-    }
-
-    /// The stepper of this system by steps of another length.
-    ///
-    /// # Errors
-    ///
-    /// [`SetupError::InvalidStep`] for an impossible one.
-    pub fn with_step(&self, h: f64) -> Result<Self, SetupError> {
-        let single = Self::of(self.system.refolded(1.0), h)?;
-        self.stages.as_ref().map_or(Ok(single.clone()), |stages| single.composed(stages.scheme))
     }
 
     /// Sets the memory of a state to that of a new start.
