@@ -97,7 +97,7 @@ fn geodesics_on_the_librarys_groups() {
 #[test]
 fn geodesics_on_products() {
     let groups: [(&str, Generators, &str, Generators); 6] = [
-        ("Sp4", symplectic(), "SO3", library::<SO3<f64>>()),
+        ("Map", affine(2), "SO3", library::<SO3<f64>>()),
         ("SE3", library::<SE3<f64>>(), "SO4", orthogonal(4)),
         ("SE2", library::<SE2<f64>>(), "SL2", library::<SL2<f64>>()),
         ("SU2", library::<SU2<f64>>(), "Heisenberg", library::<Heisenberg<f64>>()),
@@ -110,7 +110,7 @@ fn geodesics_on_products() {
         let mut whole = blocks(&[&K, &M]);
         (whole[(0, m + 1)], whole[(m + 1, 0)]) = (0.3, 0.3);
         let xi: Vec<f64> = moving(m + n).iter().map(|part| 3.0 * part).collect();
-        let own = [(first, &A), (second_name, &B)].into_iter().find(|(name, _)| ["Sp4", "SO4"].contains(name));
+        let own = [(first, &A), (second_name, &B)].into_iter().find(|(name, _)| ["Map", "SO4"].contains(name));
         let own = own.map(|(name, all)| {
             format!("generators = {{ {name} = [{}] }}\n", all.iter().map(written).collect::<Vec<_>>().join(", "))
         });
