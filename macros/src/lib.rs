@@ -13,7 +13,8 @@ use liestep_derivation::Role;
 ///     group = SO3,                    the group that F belongs to
 ///     generators = […],               its generators, by rows, if it is a group of your own; for one that
 ///                                     `matrix_group!` declares, `group = Name!` finds them
-///     group(F = SO3, d = R3, …),      or the increments of two to four bodies, rotations and translations
+///     group(F = SO3, d = R3, …),      or the increments of two to four bodies; of a group of your own `Q = Name!`, or with
+///     generators(Name = […], …),      the generators of each such group
 ///     advected(w = up, …),            w is the field `up`, moved by the group: w_i = g_i⁻¹ · up; may be left out
 ///     given(u = torque, …),           u is the field `torque` unless a step has another value; may be left out
 ///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings; or
@@ -56,7 +57,7 @@ use liestep_derivation::Role;
 /// the bodies conserve together, and whether a step solves them together. An example is
 /// `examples/declarations/double_pendulum.rs`.
 ///
-/// A factor is any group of the library, as in `group(F = SE3, Q = SO3)`. Matrices of several sizes have an `I` of the size of
+/// A factor is any group, as in `group(F = SE3, Q = SO3)`. Matrices of several sizes have an `I` of the size of
 /// the matrix that it stands beside. Translations have `R1`, `R2` or `R3`: their increment is a scalar or a vector in the axes
 /// of space, which is added. The rotation of a wheel about its axis is in `R1`, as in
 /// `examples/declarations/gyrostat.rs`.

@@ -3,6 +3,8 @@
 
 #[path = "whole/motions.rs"]
 mod motions;
+#[path = "whole/own_factors.rs"]
+mod own_factors;
 #[path = "whole/products.rs"]
 mod products;
 #[path = "whole/special_linear.rs"]
@@ -80,12 +82,18 @@ fn decimal(entry: f64) -> String {
     format!("{entry:?}")
 }
 
+/// Generators as an array, each by rows.
+fn written(generators: &Generators) -> String {
+    let n = generators[0].len().isqrt();
+    let row = |row: &[f64]| format!("[{}]", row.iter().map(|&entry| decimal(entry)).collect::<Vec<_>>().join(", "));
+    let square = |m: &Vec<f64>| format!("[{}]", m.chunks(n).map(row).collect::<Vec<_>>().join(", "));
+    format!("[{}]", generators.iter().map(square).collect::<Vec<_>>().join(", "))
+}
+
 /// A kinetic energy on the group of these generators. Where the group isn't rigid, half of it is that of `I − F⁻¹`, or the
 /// order is one.
 fn text(n: usize, generators: &Generators, is_rigid: bool) -> String {
-    let row = |row: &[f64]| format!("[{}]", row.iter().map(|&entry| decimal(entry)).collect::<Vec<_>>().join(", "));
-    let square = |m: &Vec<f64>| format!("[{}]", m.chunks(n).map(row).collect::<Vec<_>>().join(", "));
-    let all = generators.iter().map(square).collect::<Vec<_>>().join(", ");
+    let all = written(generators);
     let kinetic = if is_rigid {
         "((F - I) * J * (F - I).transpose()).trace() / (2 * h)"
     } else {
@@ -93,7 +101,7 @@ fn text(n: usize, generators: &Generators, is_rigid: bool) -> String {
             + ((I - inverse(F)) * J * (I - inverse(F)).transpose()).trace()) / (4 * h)"
     };
     format!(
-        "#[lagrangian(group = Own, generators = [{all}], l_d = {kinetic})] struct Free {{ J: SMatrix<f64, {n}, {n}> }}"
+        "#[lagrangian(group = Own, generators = {all}, l_d = {kinetic})] struct Free {{ J: SMatrix<f64, {n}, {n}> }}"
     )
 }
 

@@ -34,6 +34,21 @@ def orthogonal(n):
     return [unit(n, (i, j, -1), (j, i, 1)) for i in range(n) for j in range(i + 1, n)]
 
 
+def poses():
+    turns = [unit(4, (i, j, -1), (j, i, 1)) for i, j in ((1, 2), (2, 0), (0, 1))]
+    return turns + [unit(4, (k, 3, 1)) for k in range(3)]
+
+
+def block_diag(*blocks):
+    """A matrix of these blocks."""
+    n, at = sum(len(block) for block in blocks), 0
+    matrix = np.zeros((n, n))
+    for block in blocks:
+        matrix[at : at + len(block), at : at + len(block)] = block
+        at += len(block)
+    return matrix
+
+
 FORM = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.eye(2), np.zeros((2, 2))]])
 GROUPS = {
     "SL3": (special_linear(3), lambda g: np.linalg.det(g) - 1),
@@ -116,6 +131,52 @@ def test_a_product_of_any_groups():
     ]
     assert abs(ends[0].velocity[-1][:6] - ends[1].velocity[-1][:6]).max() < 1e-12
     assert abs(ends[0]["energy"] - ends[1]["energy"]).max() < 1e-12
+
+
+def test_a_product_with_groups_of_ones_own():
+    """A drop, a body in space and a map of the plane, beside the same groups as blocks of one matrix."""
+    drop, pose, plane = special_linear(3), poses(), affine(2)
+    kinetic = "(((F - I) * K * (F - I).transpose()).trace() + ((I - inverse(F)) * K * (I - inverse(F)).transpose()).trace()) / (4 * h)"
+    metrics = [np.diag(np.arange(1.0, n + 1)) for n in (3, 4, 3)]
+    names = ["A", "B", "C"]
+    apart = ls.lagrangian(
+        {"A": "SL3", "B": "SE3", "C": "Plane"},
+        generators={"Plane": plane, "SL3": drop},
+        l_d=" + ".join(kinetic.replace("F", name).replace("K", f"K_{name}") for name in names),
+        **{f"K_{name}": metric for name, metric in zip(names, metrics, strict=True)},
+    )
+    sizes, bases = (3, 4, 3), (drop, pose, plane)
+    blocks = [
+        block_diag(*(e if at == own else np.zeros((n, n)) for at, n in enumerate(sizes)))
+        for own, basis in enumerate(bases)
+        for e in basis
+    ]
+    one = ls.lagrangian("Blocks", generators=blocks, K=block_diag(*metrics), l_d=kinetic)
+    velocity = 0.3 * np.cos(np.arange(1, len(blocks) + 1))
+
+    def end(term, steps, **method):
+        run = term.stepper(1 / steps, **method).run(velocity=velocity, until=1)
+        assert abs(run.spatial_momentum[-1] - run.spatial_momentum[0]).max() < 1e-13
+        return run.velocity[-1]
+
+    assert abs(end(apart, 50) - end(one, 50)).max() < 1e-12
+    for method, order, coarsest in (({}, 2, 40), ({"composition": "Suzuki 4"}, 4, 10)):
+        exact = end(apart, 400, composition="Kahan-Li 8")
+        errors = [np.linalg.norm(end(apart, steps, **method) - exact) for steps in (coarsest, 2 * coarsest)]
+        assert abs(np.log2(errors[0] / errors[1]) - order) < 0.1, errors
+
+
+def test_mistakes_of_generators_in_products():
+    two = {"F": "SO3", "Q": "Own"}
+    for wrong, message in (
+        ({}, "isn't known"),
+        ({"generators": {"Other": [unit(2, (0, 1, 1))]}}, "no group of your own is called `Other`"),
+        ({"generators": {"Own": [1, 2]}}, "square matrices"),
+    ):
+        with pytest.raises(ls.DeclarationError, match=message):
+            ls.lagrangian(two, **wrong, k=1.0, l_d="k * ((F - I).norm_squared() + (Q - I).norm_squared()) / h")
+    # One group needs no name.
+    ls.lagrangian(two, generators=[unit(2, (0, 1, 1))], k=1.0, l_d="k * ((F - I).norm_squared() + (Q - I).norm_squared()) / h")
 
 
 def test_an_accuracy_is_reached():

@@ -93,10 +93,12 @@ fn geodesics_on_the_librarys_groups() {
     }
 }
 
-/// Geodesics of a metric that couples the factors of a product, against the structure constants of both.
+/// Geodesics of a metric that couples the factors of a product, some of them of the file's own, against the structure constants of both.
 #[test]
 fn geodesics_on_products() {
-    let groups: [(&str, Generators, &str, Generators); 4] = [
+    let groups: [(&str, Generators, &str, Generators); 6] = [
+        ("Map", affine(2), "SO3", library::<SO3<f64>>()),
+        ("SE3", library::<SE3<f64>>(), "SO4", orthogonal(4)),
         ("SE2", library::<SE2<f64>>(), "SL2", library::<SL2<f64>>()),
         ("SU2", library::<SU2<f64>>(), "Heisenberg", library::<Heisenberg<f64>>()),
         ("SE3", library::<SE3<f64>>(), "SO3", library::<SO3<f64>>()),
@@ -108,8 +110,13 @@ fn geodesics_on_products() {
         let mut whole = blocks(&[&K, &M]);
         (whole[(0, m + 1)], whole[(m + 1, 0)]) = (0.3, 0.3);
         let xi: Vec<f64> = moving(m + n).iter().map(|part| 3.0 * part).collect();
+        let own = [(first, &A), (second_name, &B)].into_iter().find(|(name, _)| ["Map", "SO4"].contains(name));
+        let own = own.map(|(name, all)| {
+            format!("generators = {{ {name} = [{}] }}\n", all.iter().map(written).collect::<Vec<_>>().join(", "))
+        });
+        let own = own.unwrap_or_default();
         let text = format!(
-            "[lagrangian]\ngroup = {{ A = \"{first}\", B = \"{second_name}\" }}\nvelocity = [\"xi\", \"eta\"]\n\
+            "[lagrangian]\ngroup = {{ A = \"{first}\", B = \"{second_name}\" }}\n{own}velocity = [\"xi\", \"eta\"]\n\
              discretise = \"trapezoid(Cayley)\"\nl = \"xi.dot(K * xi) / 2 + eta.dot(M * eta) / 2 + c * xi[0] * eta[1]\"\n\
              K = {}\nM = {}\nc = 0.3\n[start]\nA = {{ {}velocity = {:?} }}\nB = {{ {}velocity = {:?} }}\n",
             written(&K),
@@ -129,6 +136,55 @@ fn geodesics_on_products() {
             &text,
             &reference.end(DMatrix::identity(rows, rows), &xi, 1.0, 400).1,
         );
+    }
+}
+
+/// Products with groups of the file's own, free and with kinetic energies that the Cayley map couples: orders, momentum in
+/// space, distance from the group.
+#[test]
+fn products_with_groups_of_the_files_own() {
+    let matrices = |all: &Generators| format!("[{}]", all.iter().map(written).collect::<Vec<_>>().join(", "));
+    let metrics = |all: &[Generators]| all.iter().map(|one| metric(one[0].nrows())).collect::<Vec<_>>();
+    // A drop beside a body in space, in this order and the other; a map of the plane beside a translation of space, and a drop.
+    let free: [(&str, Vec<(&str, Generators, &str)>); 3] = [
+        ("drop, body", vec![("A", special_linear(), "SL3"), ("B", poses(4), "SE3")]),
+        ("body, drop", vec![("A", poses(4), "SE3"), ("B", special_linear(), "SL3")]),
+        ("map, drop, turn", vec![("A", affine(2), "Map"), ("B", special_linear(), "SL3"), ("C", turns(), "SO3")]),
+    ];
+    for (name, factors) in free {
+        let all: Vec<Generators> = factors.iter().map(|(_, all, _)| all.clone()).collect();
+        let own = factors.iter().filter(|(.., group)| ["SL3", "Map"].contains(group));
+        let own: Vec<String> = own.map(|(_, all, group)| format!("{group} = {}", matrices(all))).collect();
+        let (group, kinetic): (Vec<String>, Vec<String>) = factors
+            .iter()
+            .map(|(F, _, group)| (format!("{F} = \"{group}\""), ANY.replace('F', F).replace('J', &format!("J_of_{F}"))))
+            .unzip();
+        let (J, generators) = (metrics(&all), product(&all));
+        let xi = moving(generators.len());
+        let mut text = format!(
+            "[lagrangian]\ngroup = {{ {} }}\ngenerators = {{ {} }}\nl_d = \"\"\"\n{}\"\"\"\n",
+            group.join(", "),
+            own.join(", "),
+            kinetic.join(" + ")
+        );
+        let mut starts = String::from("[start]\n");
+        let mut before = 0;
+        for ((F, own, group), J) in factors.iter().zip(&J) {
+            text += &format!("J_of_{F} = {}\n", written(J));
+            let euler = if *group == "SO3" { "euler = [0, 0, 0], " } else { "" };
+            starts += &format!("{F} = {{ {euler}velocity = {:?} }}\n", &xi[before..before + own.len()]);
+            before += own.len();
+        }
+        text += &starts;
+        let blocks = blocks(&J.iter().collect::<Vec<_>>());
+        let reference = Reference::free(&generators, of_traces(&generators, &blocks));
+        let n = generators[0].nrows();
+        let (_, exact) = reference.end(DMatrix::identity(n, n), &xi, 1.0, 400);
+        assert_orders(name, &text, &exact);
+        for method in ["", "Suzuki 4"] {
+            let [momentum, defect] = drifts(&second(&text, method, 100), generators.len());
+            assert!(momentum < 1e-14 && defect < 1e-13, "{name} {method}: {momentum:e} {defect:e}");
+        }
     }
 }
 

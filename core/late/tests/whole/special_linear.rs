@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, RealField, SMatrix, SVector, Vector3};
 
 matrix_group! {
     /// Maps of space that keep volumes.
-    type SL3 = [
+    pub(crate) type SL3 = [
         [[0.0, 1.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
         [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
         [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],

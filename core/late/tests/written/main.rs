@@ -10,11 +10,12 @@ use declarations::{CayleyTop, DoublePendulum, Flyer, FullTop, LogTop, SixthOrder
 use liestep::groups::{CayleyRetraction, LieGroup, Retraction, SE3, SE23};
 use liestep::mechanics::{Effect, Regular};
 use liestep::methods::CompositionScheme;
-use liestep::motion::Plan;
+use liestep::motion::{Plan, Propagator as _};
 use liestep::numbers::Entries;
+use liestep::with::Method;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep_derivation::whole::StepRefusal;
-use liestep_late::{Declaration, LateError, c, latex, rust};
+use liestep_late::{Declaration, LateError, Whole, c, latex, rust};
 use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, UnitQuaternion, Vector3};
 
 use door::{Course, Door, STEP, folder, is_there, row};
@@ -165,6 +166,54 @@ fn so_has_one_of_five_rows() {
     let text = c(parsed(ExtendedPose::DECLARATION)).expect("a step in C");
     let velocity = [0.25, -0.4, 0.6, 0.15, 0.1, -0.2, 0.05, 0.3, -0.1];
     assert!(has_the_bits_of(&ExtendedPose { J }, attitude, &velocity, 1_000, (Door::C, &text)));
+}
+
+/// A drop that keeps its volume, a group of the text's own, and a body in space.
+#[test]
+fn so_has_one_of_a_product_with_an_own_group() {
+    if !is_there("cc") {
+        return;
+    }
+    let kinetic = |F: &str, J: &str| {
+        format!(
+            "((({F} - I) * {J} * ({F} - I).transpose()).trace()
+                + ((I - inverse({F})) * {J} * (I - inverse({F})).transpose()).trace()) / (4 * h)"
+        )
+    };
+    let declaration = parsed(&format!(
+        "#[lagrangian(group(Q = Drops, F = SE3), advected(w = up.seen_from(F)), generators(Drops = [
+            [[0, 1, 0], [0, 0, 0], [0, 0, 0]], [[0, 0, 1], [0, 0, 0], [0, 0, 0]], [[0, 0, 0], [1, 0, 0], [0, 0, 0]],
+            [[0, 0, 0], [0, 0, 1], [0, 0, 0]], [[0, 0, 0], [0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 0, 0], [0, 1, 0]],
+            [[1, 0, 0], [0, -1, 0], [0, 0, 0]], [[0, 0, 0], [0, 1, 0], [0, 0, -1]]]),
+            l_d = {} + {} - h / 2 * (w.dot(rho) + (F.transpose() * w).dot(rho)))]
+        struct DropAndBody {{ J: Matrix3<f64>, K: Matrix4<f64>, rho: Vector4<f64>, up: Vector4<f64> }}",
+        kinetic("Q", "J"),
+        kinetic("F", "K")
+    ));
+    let numbers = declaration
+        .numbers(&[
+            ("J", &[1.0, 0.05, 0.02, 0.05, 1.1, 0.03, 0.02, 0.03, 1.2]),
+            ("K", &[2.0, 0.1, 0.0, 0.0, 0.1, 1.5, 0.0, 0.0, 0.0, 0.0, 1.1, 0.0, 0.0, 0.0, 0.0, 1.3]),
+            ("rho", &[0.3, -0.2, 0.4, 2.0]),
+            ("up", &[0.0, 0.0, 1.0, 0.0]),
+        ])
+        .expect("numbers");
+    let whole: Whole = Whole::of(declaration, &numbers, STEP, Method::default()).expect("a stepper");
+    let attitude: Vec<f64> =
+        [3_usize, 4].iter().flat_map(|n| (0..n * n).map(move |at| f64::from(u8::from(at % (n + 1) == 0)))).collect();
+    let velocity = [0.0, 0.3, -0.08, -0.28, 0.15, 0.24, -0.21, -0.17, 0.3, -0.7, 1.1, 0.2, 0.5, -0.4];
+    let mut state = whole.start(&attitude, &velocity).expect("a start");
+    let momentum = state[25..39].to_vec();
+    let mut expected = String::new();
+    let text = c(declaration).expect("a step in C");
+    let folder = folder("own");
+    let found = Door::C.rows((declaration, &text), &folder, (200, &[1.0]), [&numbers, &attitude, &momentum, &velocity]);
+    for _ in 0..2 {
+        whole.run(&mut state, 100).expect("steps");
+        expected += &row(state[25..39].iter().chain(&state[..25]).copied());
+    }
+    fs::remove_dir_all(&folder).expect("the folder is there");
+    assert_eq!(found, Some(expected));
 }
 
 #[test]

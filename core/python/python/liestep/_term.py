@@ -186,7 +186,7 @@ def _declared(
             text(name, one)
     on = f"group = {group}" if isinstance(group, str) else f"group({', '.join(f'{n} = {g}' for n, g in group.items())})"
     if generators is not None:
-        on += f", generators = {_generators(group, generators)}"
+        on += f", {_generators(generators)}"
     sources = ", ".join(f"{name} = {source}" for name, source in (advected or {}).items())
     carried = f"advected({sources}), " if sources else ""
     if head.startswith("pace = "):
@@ -205,13 +205,19 @@ def _declared(
         raise (DeclarationError.of(own) if own else error) from None
 
 
-def _generators(group: Group, generators: Any) -> str:
-    """A basis of a group's Lie algebra as text."""
-    if not isinstance(group, str):
-        raise DeclarationError("`generators` are those of one group: give its name as a text")
-    basis = floats("generators", generators, DeclarationError)
+def _generators(generators: Any) -> str:
+    """Bases of Lie algebras as an argument: of one group, or by the names of several."""
+    if not isinstance(generators, Mapping):
+        return f"generators = {_basis('generators', generators)}"
+    for name in generators:
+        text("generators", name)
+    return f"generators({', '.join(f'{name} = {_basis(name, one)}' for name, one in generators.items())})"
+
+
+def _basis(name: str, generators: Any) -> str:
+    basis = floats(name, generators, DeclarationError)
     if basis.ndim != 3 or basis.shape[1] != basis.shape[2]:
-        raise DeclarationError(f"`generators` are a list of square matrices, and have the shape {basis.shape}")
+        raise DeclarationError(f"`{name}` are a list of square matrices, and have the shape {basis.shape}")
     return repr(basis.tolist())
 
 
@@ -234,8 +240,9 @@ def lagrangian(
     group : str or mapping
         ``"SO3"``, ``"SE3"``, …; of several bodies a name for each increment: ``{"F_1": "SO3", "F_2": "R3"}``; or a name of
         your own with `generators`.
-    generators : array_like, optional
-        A basis of the Lie algebra of a group of your own: square matrices.
+    generators : array_like or mapping, optional
+        A basis of the Lie algebra of a group of your own: square matrices; in a product by the group's name,
+        ``{"Own": basis}``.
     advected : mapping, optional
         What is carried along: the name that the body sees it by, and the parameter that it is in space.
     l_d : str
@@ -283,6 +290,15 @@ def lagrangian(
     >>> run = flow.stepper(0.01).run(velocity=np.full(8, 0.1), until=1)
     >>> bool(abs(np.linalg.det(run.attitude.reshape(-1, 3, 3)) - 1).max() < 1e-13)
     True
+
+    The flow beside a body that turns:
+
+    >>> both = ls.lagrangian({"F": "SL3", "Q": "SO3"}, generators={"SL3": basis}, K=np.diag([1, 2, 3]), J_d=[1, 2, 2.5],
+    ...     l_d="(((F - I) * K * (F - I).transpose()).trace()"
+    ...         " + ((I - inverse(F)) * K * (I - inverse(F)).transpose()).trace()) / (4 * h)"
+    ...         " + ((Q - I) * J_d * (Q - I).transpose()).trace() / (2 * h)")
+    >>> both.stepper(0.01).run(velocity=np.full(11, 0.1), until=1).attitude.shape
+    (101, 18)
     """
     if (l_d is None) == (l is None) or (l is None) != (discretise is None):
         raise DeclarationError("a Lagrangian has `l_d`, or `l` with `discretise`, as in `discretise=\"trapezoid(Cayley)\"`")

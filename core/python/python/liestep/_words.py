@@ -15,7 +15,6 @@ WORDS = [
     ("a field of the struct", "a parameter"),
     ("the struct has no field", "there is no parameter"),
     (" of the struct", ""),
-    ("write the `DiscreteLagrangian` by hand", "give the blocks of one matrix as `generators` of a group of your own"),
     ("write the word `gradients` into the declaration, of each term", "there are none in Python"),
     ("let `or_substeps` divide such steps", "let `substeps` divide such steps"),
     ("the kinetic part of `GeodesicBody` turns", '`ls.body(J, kinetic="geodesic")` turns'),
@@ -57,6 +56,8 @@ def _code(code: str) -> str:
         return f'{found[1]}="{found[2]}"'
     if found := re.fullmatch(r"(velocity|displacement)\((.+)\)", code):
         return f'{found[1]}="{found[2]}"'
+    if found := re.fullmatch(r"generators\((\w+) = (.+)\)", code):
+        return f'generators={{"{found[1]}": {found[2]}}}'
     if found := re.fullmatch(r"(group|advected)\((.+ = .+)\)", code):
         pairs = (pair.split(" = ", 1) for pair in found[2].split(", "))
         return f"{found[1]}={{{', '.join(f'{chr(34)}{name}{chr(34)}: {chr(34)}{value}{chr(34)}' for name, value in pairs)}}}"

@@ -60,7 +60,7 @@ const KEYS_OF_CONSTRAINTS: &str = "a constraint on velocities has `zero`; it may
 const KEYS_OF_HAMILTONIANS: &str = "a Hamiltonian has `h`; it may have a `momentum`, a `group` with `generators`, \
                                     `advected`, as in `advected = { w = \"up\" }`, and has a key for each parameter";
 const GROUP: &str = "a group is a name, as \"SE3\", or a table of a product's increments, as `{ F = \"SO3\", d = \"R3\" }`; \
-                     one of your own has a name of its own and its `generators`";
+                     one of your own has a name of its own and its `generators`, in a product `{ Own = […] }`";
 
 /// Field name for the energy of a motion with a pace.
 const ENERGY: &str = "E_0_of_the_start";
@@ -346,19 +346,29 @@ fn placed(
         }
         Some((group, _)) => format!("= {}", name(group)?),
     };
-    let generators = match generators {
+    let generators = match generators.map(|value| (value, value.get_ref())) {
         None => String::new(),
-        Some(value) => {
-            let list = Vec::<Vec<Vec<Scalar<Number>>>>::deserialize(ValueDeserializer::from(value.clone()))
-                .map_err(|error| in_value(value, &error))?;
-            let row = |row: &Vec<Scalar<Number>>| {
-                format!("[{}]", row.iter().map(|entry| format!("{:?}", entry.value)).collect::<Vec<_>>().join(", "))
-            };
-            let matrix = |rows: &Vec<Vec<_>>| format!("[{}]", rows.iter().map(row).collect::<Vec<_>>().join(", "));
-            format!("generators = [{}],", list.iter().map(matrix).collect::<Vec<_>>().join(", "))
+        Some((_, DeValue::Table(groups))) => {
+            let mut groups: Vec<_> = groups.iter().collect();
+            groups.sort_by_key(|(name, _)| name.span().start);
+            let one = |(name, value): (&Spanned<_>, _)| Ok(format!("{} = {}", name.get_ref(), matrices(value)?));
+            let each = groups.into_iter().map(one).collect::<Result<Vec<_>, SpanMessage>>()?;
+            format!("generators({}),", each.join(", "))
         }
+        Some((value, _)) => format!("generators = {},", matrices(value)?),
     };
     Ok(Place { group, generators, increments })
+}
+
+/// A list of matrices, each row by row.
+fn matrices(value: &Spanned<DeValue<'_>>) -> Result<String, SpanMessage> {
+    let list = Vec::<Vec<Vec<Scalar<Number>>>>::deserialize(ValueDeserializer::from(value.clone()))
+        .map_err(|error| in_value(value, &error))?;
+    let row = |row: &Vec<Scalar<Number>>| {
+        format!("[{}]", row.iter().map(|entry| format!("{:?}", entry.value)).collect::<Vec<_>>().join(", "))
+    };
+    let matrix = |rows: &Vec<Vec<_>>| format!("[{}]", rows.iter().map(row).collect::<Vec<_>>().join(", "));
+    Ok(format!("[{}]", list.iter().map(matrix).collect::<Vec<_>>().join(", ")))
 }
 
 /// The argument `advected(w = up, Q = F_2.seen_from(F_1)),`.

@@ -1,14 +1,13 @@
 //! Messages of the derivation in the words of files: keys in the place of arguments and fields.
 
 /// Words about programs, and what they are about in a file.
-const WORDS: [(&str, &str); 7] = [
+const WORDS: [(&str, &str); 6] = [
     (
         "declare what changes with it by `given(u = field)`, and go on by `step_with`",
         "what changes with it is prescribed by a program, with the library itself",
     ),
     ("the struct has no field", "this table has no key"),
     (" of the struct", " of this table"),
-    ("write the `DiscreteLagrangian` by hand", "give the blocks of one matrix as `generators` of a group of your own"),
     ("declare parts as terms of their own, and add them", "declare parts in tables of their own, `[[lagrangian]]`"),
     ("in a term of its own, and add it", "in a table of its own, `[[lagrangian]]`"),
     ("write the word `gradients` into the declaration, of each term", "no file has them"),
@@ -90,6 +89,7 @@ fn key(code: &str) -> String {
             format!("{name} = {{ {} }}", inner.split(',').map(pair).collect::<Vec<_>>().join(", "))
         }
         "advected" => name.to_owned(),
+        "generators" => format!("generators = {{ {inner} }}"),
         "velocity" | "displacement" => format!("{name} = {}", quoted(inner)),
         _ => code.to_owned(),
     }

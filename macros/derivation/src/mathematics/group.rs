@@ -156,10 +156,16 @@ impl Group {
     }
 
     /// Coordinates of increments that stay in the group; the index of a generator that has none. Those of a product are those
-    /// of its factors.
+    /// of its factors, and Cayley's if all factors have these.
     pub fn chart(&self) -> Result<Chart, usize> {
         if self.is_product() {
-            return Ok(Chart::Cayley);
+            let mut chart = Chart::Cayley;
+            for (at, factor) in self.factors.iter().enumerate() {
+                if factor.chart().map_err(|k| self.component_of(at) + k)? == Chart::Product {
+                    chart = Chart::Product;
+                }
+            }
+            return Ok(chart);
         }
         let numbers = self.generators.iter().map(|one| one.iter().map(|entry| entry.to_f64()).collect());
         chart(&numbers.collect::<Vec<Vec<f64>>>())

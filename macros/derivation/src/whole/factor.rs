@@ -184,6 +184,9 @@ impl MatrixFactor {
         if self.chart == Chart::Product {
             return self.product(words, half).0;
         }
+        if self.form == Form::Rotation {
+            return tangent_of_rotation(words, half);
+        }
         let (n, count, two) = (self.size(), self.dimension(), Value::of(2.0));
         if self.form == Form::Translation {
             return (0..count).map(|k| (0..count).map(|i| if i == k { two } else { Value::ZERO }).collect()).collect();
@@ -331,13 +334,25 @@ impl MatrixFactor {
     }
 }
 
-/// `F − I` of half the Cayley coordinates on SO(3).
-fn rotation(words: &mut Words, half: &[Value]) -> Matrix {
-    let (x, y, z) = (half[0], half[1], half[2]);
+/// `2/(1 + y·y)`, and its products with half the Cayley coordinates on SO(3).
+fn scaled(words: &mut Words, half: &[Value]) -> (Value, [Value; 3]) {
     let square = words.dot(half, half);
     let one = words.add(Value::ONE, square);
     let scale = words.divide(Value::of(2.0), one);
-    let [bx, by, bz] = [x, y, z].map(|entry| words.multiply(scale, entry));
+    (scale, [half[0], half[1], half[2]].map(|entry| words.multiply(scale, entry)))
+}
+
+/// The columns of `(I + ŷ) 2/(1 + y·y)`.
+fn tangent_of_rotation(words: &mut Words, half: &[Value]) -> Vec<Vec<Value>> {
+    let (scale, [x, y, z]) = scaled(words, half);
+    let [minus_x, minus_y, minus_z] = [x, y, z].map(|entry| words.negate(entry));
+    vec![vec![scale, z, minus_y], vec![minus_z, scale, x], vec![y, minus_x, scale]]
+}
+
+/// `F − I` of half the Cayley coordinates on SO(3).
+fn rotation(words: &mut Words, half: &[Value]) -> Matrix {
+    let (x, y, z) = (half[0], half[1], half[2]);
+    let (_, [bx, by, bz]) = scaled(words, half);
     let [xx, yy, zz] = [(bx, x), (by, y), (bz, z)].map(|(a, b)| words.multiply(a, b));
     let [xy, xz, yz] = [(bx, y), (bx, z), (by, z)].map(|(a, b)| words.multiply(a, b));
     let [xx, yy, zz] = [(yy, zz), (xx, zz), (xx, yy)].map(|(a, b)| {

@@ -64,6 +64,8 @@ fn a_declaration_asks_it() {
                     { advected (w = up) , group = own :: Affine !, l_d = m * ! F , crate = here } \
                     pub struct Top { m : f64 } }";
     assert_eq!(asked, expected);
+    let of_factor = expanded("group(F = SO3, Q = Affine!), l_d = m", item).to_string();
+    assert!(of_factor.starts_with("Affine ! { { :: liestep :: __private :: lagrangian }"), "{of_factor}");
     // The name of a group without the mark `!` is unknown.
     assert!(is_refused(&expanded("group = Affine, l_d = m * F.trace()", item)));
 }

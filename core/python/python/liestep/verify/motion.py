@@ -156,8 +156,8 @@ class Term:
         groups = [part[-1].rpartition("::")[2] for part in named]
         if groups != [factor.name for factor in self.factors]:
             raise Declined(f"the groups {groups}")
-        own = self.declaration.generators
         for factor in self.factors:
+            own = self.declaration.generators(factor.name)
             expected = [[Fraction(entry) for row in e for entry in row] for e in own] if own else KNOWN.get(factor.name)
             if expected != factor.listed:
                 raise Declined(f"the generators of {factor.name}")

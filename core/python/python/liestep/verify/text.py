@@ -329,10 +329,12 @@ class Declaration:
             return parts(given[1:-1])
         return [given[1:]] if given else []
 
-    @property
-    def generators(self) -> Any:
-        given = self.arguments.get("generators")
-        return json.loads("".join(given[1:]).replace(".]", ".0]").replace(".,", ".0,")) if given else None
+    def generators(self, group: str) -> Any:
+        """The matrices of a group of one's own, by its name where several stand in the text."""
+        given = self.arguments.get("generators", [])
+        named = {part[0]: part[2:] for part in self.list("generators")} if given[:1] == ["("] else {group: given[1:]}
+        own = named.get(group)
+        return json.loads("".join(own).replace(".]", ".0]").replace(".,", ".0,")) if own else None
 
 
 def without_attributes(given: list[str]) -> list[str]:

@@ -4,8 +4,9 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
 use syn::punctuated::Punctuated;
-use syn::{Expr, ExprArray, Ident, Path, Token, parenthesized};
+use syn::{Expr, Ident, Path, Token, parenthesized};
 
+use super::generators::Generators;
 use super::group;
 use crate::declared::errors::{Errors, suggestion};
 use crate::declared::{Coordinates, Discretisation, Quadrature, Role};
@@ -30,8 +31,7 @@ pub(super) struct Arguments {
     /// The pace, with its key.
     pub(super) pace: Option<(Ident, Expr)>,
     pub(super) root: Option<Path>,
-    /// The generators, with their key.
-    pub(super) generators: Option<(Ident, ExprArray)>,
+    pub(super) generators: Option<Generators>,
     /// The names of a force's displacements, with their key.
     pub(super) displacement: Option<(Ident, Vec<Ident>)>,
     /// The key of the derivatives.
@@ -154,8 +154,7 @@ fn argument(role: Role, input: ParseStream, arguments: &mut Arguments, errors: &
         }
         "generators" if role != Role::Constraint => {
             once(arguments.generators.is_some());
-            equals(&key, input)?;
-            arguments.generators = Some((key, group::array(input)?));
+            arguments.generators = Some(Generators::of(key, input)?);
         }
         pairs @ ("advected" | "given") if role != Role::Constraint || pairs == "advected" => {
             let is_given = pairs == "given";

@@ -3,13 +3,12 @@
 use proc_macro2::Span;
 use syn::ext::IdentExt as _;
 use syn::parse::ParseStream;
-use syn::spanned::Spanned as _;
-use syn::{Expr, ExprArray, Ident, Path, PathArguments, Token};
+use syn::{Ident, Path, PathArguments, Token};
 
+use super::generators::{Generators, generators};
 use crate::declared::errors::{Errors, suggestion};
 use crate::declared::{Factor, Role};
-use crate::mathematics::group::{Defect, Group, NAMES, built_in};
-use crate::mathematics::symbolic::Rational;
+use crate::mathematics::group::{Group, NAMES, built_in};
 
 /// The name behind `group =`.
 pub(super) struct GroupName {
@@ -71,7 +70,7 @@ pub(super) fn named(input: ParseStream, errors: &mut Errors) -> syn::Result<Grou
 /// checked.
 pub(super) fn group(
     named: Option<GroupName>,
-    matrices: Option<(Ident, ExprArray)>,
+    matrices: Option<&Generators>,
     is_readable: bool,
     errors: &mut Errors,
 ) -> (Option<Path>, Group) {
@@ -84,8 +83,12 @@ pub(super) fn group(
         return stand_in();
     };
     let (name, found) = (named.name(), named.built_in());
-    let found = match (matrices, found) {
-        (Some((key, _)), Some(group)) if named.is_ours() => {
+    // A mistake of the user's name is reported where the generators are read.
+    if let Some(all) = matrices {
+        all.check(std::slice::from_ref(&name), errors);
+    }
+    let found = match (matrices.map(|all| (&all.key, all.matrices(&name))), found) {
+        (Some((key, Some(_))), Some(group)) if named.is_ours() => {
             let message = format!(
                 "`{name}` has its generators already: remove these, or give a group of your own another name than \
                  liestep's"
@@ -93,9 +96,10 @@ pub(super) fn group(
             errors.push_decisive(key.span(), message);
             Ok(group)
         }
-        (Some((_, matrices)), _) => generators(&matrices),
-        (None, Some(group)) => Ok(group),
-        // The generators may stand in an argument that couldn't be read.
+        (Some((_, Some(matrices))), _) => generators(matrices),
+        (_, Some(group)) => Ok(group),
+        // The generators may stand in an argument that couldn't be read, or have another name.
+        (Some(_), None) => return stand_in(),
         (None, None) if !is_readable => return stand_in(),
         (None, None) => {
             let (near, known) = (suggestion(&name, NAMES), NAMES.join(", "));
@@ -117,7 +121,14 @@ pub(super) fn group(
 }
 
 /// The factors of a product, with their increments.
-pub(super) fn product(named: Vec<(Ident, GroupName)>, errors: &mut Errors) -> (Vec<Factor>, Group) {
+pub(super) fn product(
+    named: Vec<(Ident, GroupName)>,
+    matrices: Option<&Generators>,
+    errors: &mut Errors,
+) -> (Vec<Factor>, Group) {
+    let own = own_groups(&named, matrices, errors);
+    // Generators may stand in an argument that couldn't be read, or have another name.
+    let is_readable = errors.is_empty();
     let (mut factors, mut groups): (Vec<Factor>, Vec<Group>) = (Vec::new(), Vec::new());
     for (increment, named) in named {
         let name = increment.unraw().to_string();
@@ -134,26 +145,60 @@ pub(super) fn product(named: Vec<(Ident, GroupName)>, errors: &mut Errors) -> (V
             errors.push_decisive(increment.span(), message);
             break;
         }
-        let known = named.built_in().map(|group| if named.is_translation() { group.added() } else { group });
-        if known.is_none() {
-            let near = if named.is_own { String::new() } else { suggestion(&named.name(), NAMES) };
-            let message = if near.is_empty() {
-                format!(
-                    "the factors of a product are groups of liestep's, {}: of a group of your own write the \
-                     `DiscreteLagrangian` by hand",
-                    NAMES.join(", ")
-                )
-            } else {
-                format!("the group `{}` isn't known{near}", named.name())
-            };
-            errors.push_over(&named.path, message);
-        }
+        let known = factor(&named, &own).or_else(|| {
+            if is_readable && own.iter().all(|(own, _)| *own != named.name()) {
+                errors.push_over(&named.path, unknown_factor(&named));
+            }
+            None
+        });
         let path = known.is_some().then_some(named.path);
         // A stand-in after a mistake lets the rest be checked.
         groups.extend(known.or_else(|| built_in("SO3")));
         factors.push(Factor { name, place: increment.span(), path });
     }
     (factors, Group::product(groups))
+}
+
+/// The user's groups among factors, by their names; `None` for one whose generators are mistaken, which has been reported.
+fn own_groups(
+    factors: &[(Ident, GroupName)],
+    matrices: Option<&Generators>,
+    errors: &mut Errors,
+) -> Vec<(String, Option<Group>)> {
+    let Some(matrices) = matrices else { return Vec::new() };
+    let is_own =
+        |named: &GroupName| named.built_in().is_none() || (!named.is_ours() && matrices.has_name(&named.name()));
+    let names: Vec<String> = factors.iter().filter(|(_, named)| is_own(named)).map(|(_, named)| named.name()).collect();
+    matrices.check(&names, errors);
+    let mut groups: Vec<(String, Option<Group>)> = Vec::new();
+    for name in names {
+        if let (Some(matrices), true) = (matrices.matrices(&name), groups.iter().all(|(known, _)| *known != name)) {
+            let group = generators(matrices).map_err(|error| errors.extend(error)).ok();
+            groups.push((name, group));
+        }
+    }
+    groups
+}
+
+/// The group of a factor; `None` where it isn't known.
+fn factor(named: &GroupName, own: &[(String, Option<Group>)]) -> Option<Group> {
+    if let Some((_, group)) = own.iter().find(|(own, _)| *own == named.name()) {
+        return group.clone();
+    }
+    named.built_in().map(|group| if named.is_translation() { group.added() } else { group })
+}
+
+fn unknown_factor(named: &GroupName) -> String {
+    let name = named.name();
+    let near = if named.is_own { String::new() } else { suggestion(&name, NAMES) };
+    if !near.is_empty() {
+        return format!("the group `{name}` isn't known{near}");
+    }
+    let known = NAMES.join(", ");
+    format!(
+        "the group `{name}` isn't known\nknown: {known}; of a group of your own give the generators too: \
+         `generators({name} = [[[0.0, -1.0], [1.0, 0.0]]])`"
+    )
 }
 
 /// The groups whose increments are vectors, which are added.
@@ -188,101 +233,4 @@ pub(super) struct TakenNames {
     pub(super) fields: Vec<String>,
     pub(super) advected: Vec<String>,
     pub(super) velocities: Vec<String>,
-}
-
-/// The array of generators, read when the group is known.
-pub(super) fn array(input: ParseStream) -> syn::Result<ExprArray> {
-    let expression: Expr = input.parse()?;
-    match plain(&expression) {
-        Expr::Array(array) => Ok(array.clone()),
-        other => {
-            let message = "write the generators as an array of matrices, each by its rows: \
-                           `[[[0.0, -1.0], [1.0, 0.0]]]`";
-            Err(syn::Error::new_spanned(other, message))
-        }
-    }
-}
-
-/// The expression without the parentheses around it, and without the invisible group of a `macro_rules!` fragment.
-fn plain(expression: &Expr) -> &Expr {
-    match expression {
-        Expr::Group(inner) => plain(&inner.expr),
-        Expr::Paren(inner) => plain(&inner.expr),
-        other => other,
-    }
-}
-
-/// The group of the generators `[[[0.0, -1.0], [1.0, 0.0]], …]`, each by rows, which are a basis of a Lie algebra.
-pub(super) fn generators(array: &ExprArray) -> syn::Result<Group> {
-    let rows = |expression: &Expr| match plain(expression) {
-        Expr::Array(array) => Ok(array.elems.clone()),
-        other => Err(syn::Error::new(other.span(), "write a matrix as an array of rows: `[[0.0, -1.0], [1.0, 0.0]]`")),
-    };
-    let mut generators = Vec::new();
-    let mut size = None;
-    for matrix in &array.elems {
-        let mut entries = Vec::new();
-        let matrix_rows = rows(matrix)?;
-        let expected = *size.get_or_insert(matrix_rows.len());
-        for row in &matrix_rows {
-            let row_entries = rows(row)?;
-            if row_entries.len() != expected || matrix_rows.len() != expected {
-                return Err(syn::Error::new(row.span(), "all generators are square matrices of one size"));
-            }
-            for entry in &row_entries {
-                entries.push(decimal(entry)?);
-            }
-        }
-        generators.push(entries);
-    }
-    match size {
-        Some(size) if (1..=MOST_ROWS).contains(&size) => {
-            let group = Group::declared(size, generators);
-            match group.defect() {
-                None => Ok(group),
-                Some(defect) => Err(explained(defect, array)),
-            }
-        }
-        _ => Err(syn::Error::new(
-            array.span(),
-            format!("a group has at least one generator, of at most {MOST_ROWS} rows"),
-        )),
-    }
-}
-
-/// The error at the superfluous generator, or at all of them if one is missing.
-fn explained(defect: Defect, array: &ExprArray) -> syn::Error {
-    let at = |k: usize| array.elems.get(k).map_or_else(|| array.span(), syn::spanned::Spanned::span);
-    match defect {
-        Defect::Zero(k) => syn::Error::new(at(k), "this generator is zero, and moves nothing: leave it out"),
-        Defect::Dependent(k) => {
-            syn::Error::new(at(k), "this generator is a combination of those before it: leave it out")
-        }
-        Defect::Open(i, j) => syn::Error::new(
-            array.span(),
-            format!(
-                "the bracket of generators {} and {} isn't a combination of them: add it to them, so that they span a \
-                 Lie algebra",
-                i + 1,
-                j + 1
-            ),
-        ),
-    }
-}
-
-/// The limit on the size of matrices: larger ones would make the derived code grow without bound.
-const MOST_ROWS: usize = 16;
-
-fn decimal(expression: &Expr) -> syn::Result<Rational> {
-    let message = "write the entry of a generator as a number: `-1.0`";
-    let value = match plain(expression) {
-        Expr::Unary(unary) if matches!(unary.op, syn::UnOp::Neg(_)) => -decimal(&unary.expr)?,
-        Expr::Lit(literal) => match &literal.lit {
-            syn::Lit::Float(float) => Rational::from_decimal(float.base10_digits()),
-            syn::Lit::Int(whole) if whole.suffix().is_empty() => Rational::from_decimal(whole.base10_digits()),
-            _ => return Err(syn::Error::new_spanned(expression, message)),
-        },
-        _ => return Err(syn::Error::new_spanned(expression, message)),
-    };
-    if value.is_overflow() { Err(syn::Error::new_spanned(expression, message)) } else { Ok(value) }
 }

@@ -2,6 +2,7 @@
 
 mod arguments;
 mod fields;
+mod generators;
 mod group;
 mod names;
 mod own_group;
@@ -23,6 +24,7 @@ use crate::mathematics::derive::View;
 use crate::mathematics::group::Group;
 use arguments::{Arguments, Source, arguments_from};
 use fields::{points, scalar, vector_type};
+use generators::Generators;
 use names::{check_names, displacements, velocities};
 
 pub use fields::{field_kind, scalar_of};
@@ -105,9 +107,8 @@ pub fn as_far_as_readable(role: Role, arguments: TokenStream, item: ItemStruct, 
     let mut arguments = read_arguments(role, arguments, errors);
     // An argument that seems to be missing may be one that couldn't be read.
     let is_readable = errors.is_empty();
-    let written = arguments.generators.iter().flat_map(|(_, all)| &all.elems);
-    let generators = written.map(syn::spanned::Spanned::span).collect();
     let (group_path, group, factors) = groups(&mut arguments, is_readable, errors);
+    let generators = places(&group, &factors, arguments.generators.as_ref());
     if let [Factor { path: Some(_), .. }] = factors.as_slice() {
         let (velocity, l, name) = (&mut arguments.velocity, &mut arguments.continuous, factors[0].group_name());
         names::parts_of_velocity(velocity, &name, arguments.root.as_ref(), l);
@@ -202,19 +203,26 @@ fn groups(arguments: &mut Arguments, is_readable: bool, errors: &mut Errors) -> 
     let named = std::mem::take(&mut arguments.factors);
     // A translation that is named is a vector, alone as beside others.
     if named.len() > 1 || named.iter().any(|(_, group)| group.is_translation()) {
-        if let Some((key, _)) = &arguments.generators {
-            errors.push(key.span(), "`generators` belong to `group = Name`: remove them");
-        }
-        let (factors, group) = group::product(named, errors);
+        let (factors, group) = group::product(named, arguments.generators.as_ref(), errors);
         (factors.first().and_then(|factor| factor.path.clone()), group, factors)
     } else {
         let single = named.into_iter().next();
         let name = single.as_ref().map_or_else(|| "F".to_owned(), |(name, _)| name.unraw().to_string());
         let place = single.as_ref().map_or_else(Span::call_site, |(name, _)| name.span());
         let named = arguments.group.take().or(single.map(|(_, named)| named));
-        let (path, group) = group::group(named, arguments.generators.take(), is_readable, errors);
+        let (path, group) = group::group(named, arguments.generators.as_ref(), is_readable, errors);
         (path.clone(), group, vec![Factor { name, place, path }])
     }
+}
+
+/// The place of each generator: its own in a user's group, else that of the increment.
+fn places(group: &Group, factors: &[Factor], generators: Option<&Generators>) -> Vec<Span> {
+    let of_factor = |(factor, own): (&Factor, &Group)| {
+        let own_places = generators.map(|all| all.places(&factor.group_name())).unwrap_or_default();
+        let place = move |k: usize| own_places.get(k).copied().unwrap_or(factor.place);
+        (0..own.dimension()).map(place).collect::<Vec<_>>()
+    };
+    factors.iter().zip(group.factors()).flat_map(of_factor).collect()
 }
 
 /// The message for a missing expression.

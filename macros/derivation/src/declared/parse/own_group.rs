@@ -4,7 +4,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use syn::parse::{Parse, ParseStream, Parser as _};
 use syn::{Attribute, ExprArray, Ident, ImplItem, Path, Token, Visibility};
 
-use super::group::generators;
+use super::generators::generators;
 use super::size;
 use crate::declared::errors::Errors;
 
@@ -71,17 +71,26 @@ pub struct Request {
     pub arguments: TokenStream,
 }
 
-/// The request for the generators of a group; `None` if no `group = Name!` is there, or if the generators have arrived.
+/// The request for the generators of a group; `None` if neither `group = Name!` nor a factor
+/// `F = Name!` is there, or if the generators have arrived.
 pub fn asked(arguments: &TokenStream) -> Option<Request> {
     let tokens: Vec<TokenTree> = arguments.clone().into_iter().collect();
     let is = |token: &TokenTree, mark: char| matches!(token, TokenTree::Punct(found) if found.as_char() == mark);
     let path = |tokens: &[TokenTree]| Path::parse_mod_style.parse2(tokens.iter().cloned().collect()).ok();
+    let of_factor = |factor: &[TokenTree]| match factor {
+        [_, equals, name @ .., mark] if is(equals, '=') && is(mark, '!') => path(name),
+        _ => None,
+    };
     let (mut group, mut root) = (None, None);
     for argument in tokens.split(|token| is(token, ',')) {
         let [TokenTree::Ident(key), equals, value @ ..] = argument else { continue };
-        match value {
+        match (value, equals) {
             _ if key == "generators" => return None,
-            [name @ .., mark] if key == "group" && is(equals, '=') && is(mark, '!') => group = path(name),
+            ([], TokenTree::Group(factors)) if key == "group" => {
+                let factors: Vec<TokenTree> = factors.stream().into_iter().collect();
+                group = factors.split(|token| is(token, ',')).find_map(of_factor);
+            }
+            ([name @ .., mark], _) if key == "group" && is(equals, '=') && is(mark, '!') => group = path(name),
             _ if key == "crate" => root = path(value),
             _ => {}
         }

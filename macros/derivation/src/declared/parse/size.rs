@@ -1,12 +1,14 @@
 //! Limits on the size of the text that is parsed.
 
-use proc_macro2::{TokenStream, TokenTree};
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 use crate::declared::errors::Errors;
 
 /// The limits on tokens and nesting: no person writes a larger Lagrangian, and parsing one recursively could overflow a
 /// stack of 2 MB without optimisation.
 const MOST_TOKENS: usize = 2_000;
+/// The limit on numbers in rows of matrices, which nest nothing: whether nine rows' generators span an algebra takes a second.
+const MOST_NUMBERS: usize = 4_096;
 const DEEPEST: usize = 32;
 
 /// Words followed by a part of an expression or of a type, which may begin with such a word again.
@@ -60,7 +62,7 @@ impl Open {
 /// Checks the size of the arguments; `None` if they are too large, which has been reported.
 pub(super) fn check(the: &str, arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
     let mut open = vec![Open::new(arguments.clone(), 0)];
-    let mut count = 0;
+    let (mut count, mut numbers) = (0, 0);
     while let Some(mut innermost) = open.pop() {
         let Some(token) = innermost.tokens.next() else { continue };
         count += 1;
@@ -80,12 +82,36 @@ pub(super) fn check(the: &str, arguments: &TokenStream, errors: &mut Errors) -> 
             errors.push(span, format!("nested more than {DEEPEST} deep: bind parts with `let`"));
             return None;
         }
+        let row = row(&token);
+        numbers += row.unwrap_or_default();
+        if numbers > MOST_NUMBERS {
+            errors.push(token.span(), format!("{the} has more than {MOST_NUMBERS} numbers: declare a smaller group"));
+            return None;
+        }
         let inside = match token {
-            TokenTree::Group(group) => Some(Open::new(group.stream(), innermost.depth + 1)),
+            TokenTree::Group(group) if row.is_none() => Some(Open::new(group.stream(), innermost.depth + 1)),
             _ => None,
         };
         open.push(innermost);
         open.extend(inside);
     }
     Some(())
+}
+
+/// The number of numbers in a row of a matrix, `[0.0, -1.0]`; `None` for other tokens.
+fn row(token: &TokenTree) -> Option<usize> {
+    let TokenTree::Group(group) = token else { return None };
+    let (mut is_open, mut is_signed, mut count) = (true, false, 0);
+    for token in group.stream() {
+        match token {
+            TokenTree::Punct(sign) if sign.as_char() == '-' && is_open && !is_signed => is_signed = true,
+            TokenTree::Punct(comma) if comma.as_char() == ',' && !is_open => is_open = true,
+            TokenTree::Literal(_) if is_open => {
+                count += 1;
+                (is_open, is_signed) = (false, false);
+            }
+            _ => return None,
+        }
+    }
+    (group.delimiter() == Delimiter::Bracket).then_some(count)
 }
