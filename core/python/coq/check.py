@@ -22,7 +22,7 @@ import write
 
 HERE = Path(__file__).resolve().parent
 OTHER = {"+": "-", "-": "+", "*": "+", "/": "*"}
-LIMIT = 60
+LIMIT = 45
 # A divisor and the argument of a function have few terms: products of more aren't computed until all of these are known.
 SHORT = 2000
 ROUNDS = 20

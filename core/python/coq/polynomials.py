@@ -36,7 +36,7 @@ def stripped(one: Polynomial) -> tuple[set[int], Polynomial]:
 
 def divided(one: Polynomial, other: Polynomial) -> Polynomial | None:
     """The quotient, where the other polynomial divides without a rest; it isn't a number."""
-    if len(other) < 2:
+    if () in other and len(other) == 1:
         return None
 
     def leading(p: Polynomial) -> Monomial:
@@ -57,6 +57,15 @@ def divided(one: Polynomial, other: Polynomial) -> Polynomial | None:
             if not rest[key]:
                 del rest[key]
     return found
+
+
+def lead(one: Polynomial) -> str:
+    """A product of powers that comes first in an order of all, if its coefficient is one; as variables with their powers, in Coq."""
+    for sign in (1, -1):
+        first = max(one, key=lambda m: (len(m), [sign * j for j in m]))
+        if one[first] == 1 and first:
+            return "[" + "; ".join(f"({j}, {k})" for j, k in sorted(Counter(first).items())) + "]"
+    return "[]"
 
 
 def factored(value: int) -> list[int]:

@@ -17,7 +17,7 @@ from typing import Any
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "python" / "liestep"))
 
-from polynomials import Polynomial, content, divided, factored, product, stripped  # noqa: E402
+from polynomials import Polynomial, content, divided, factored, lead, product, stripped  # noqa: E402
 from symbols import FUNCTIONS, Matrix, Number, called, field, motion, node, number, total, written  # noqa: E402
 from verify.text import long_decimals  # noqa: E402
 
@@ -216,7 +216,8 @@ class Problem:
         variables, one = stripped(one)
         new = [{(): p} for p in factored(content(one))] + [{(variable,): 1} for variable in variables]
         self.divisors += [part for part in new if part not in self.divisors]
-        one = {m: x // content(one) for m, x in one.items()}
+        unit = content(one) * (1 if one[max(one, key=lambda m: (len(m), m))] > 0 else -1)
+        one = {m: x // unit for m, x in one.items()}
         for other in self.divisors:
             while len(other) > 1 and (rest := divided(one, other)) is not None:
                 one = rest
@@ -228,7 +229,11 @@ class Problem:
 
     def call(self, function: str, argument: Polynomial, powers: list[int], order: int) -> None:
         """A rule for a function at argument / (divisors to these powers)."""
-        known = list(zip(self.divisors, powers, strict=False))
+        known = []
+        for one, k in zip(self.divisors, powers, strict=False):
+            while k and (rest := divided(argument, one)) is not None:
+                argument, k = rest, k - 1
+            known.append((one, k))
         value, x = self.quotient(argument, product(known)), len(self.places[12])
         if function != "sqrt" and argument == ({(): 1} if function == "ln" else {}):
             self.rules.append("AtOrigin")
@@ -247,14 +252,15 @@ class Problem:
     def text(self, one: Polynomial) -> str:
         """A polynomial as a text, whose names are the arrays."""
         place = {variable: (array, at) for array, own in enumerate(self.places) for at, variable in enumerate(own)}
-        found = number(0)
+        terms = []
         for monomial, x in one.items():
-            term = number(x)
+            terms.append(number(x))
             for variable in monomial:
                 array, at = place[variable]
-                term = term * Number(node("Entry", at, 0, node("Name", array)))
-            found = found + term
-        return written(found.node)
+                terms[-1] *= Number(node("Entry", at, 0, node("Name", array)))
+        while len(terms) > 1:
+            terms = [total(terms[at : at + 2]) for at in range(0, len(terms), 2)]
+        return written(total(terms).node)
 
     def found_point(self) -> tuple[list[int], list[int]]:
         """A point at which each divisor has a prime of its own, once; or is one."""
@@ -263,8 +269,7 @@ class Problem:
             for _ in range(400):
                 point = [draw.randrange(2, size) for _ in range(self.count)]
                 values = [sum(x * math.prod(point[j - 1] for j in m) for m, x in one.items()) for one in self.divisors]
-                varied = [value for one, value in zip(self.divisors, values, strict=True) if len(one) > 1 or () not in one]
-                primes = [one[()] if list(one) == [()] else own_prime(value, varied) for one, value in zip(self.divisors, values, strict=True)]
+                primes = [one[()] if list(one) == [()] else own_prime(value, values) for one, value in zip(self.divisors, values, strict=True)]
                 if all(primes):
                     return point, [p for p in primes if p]
         raise field.Declined("no point tells the divisors apart")
@@ -308,6 +313,7 @@ class Problem:
             + f"\nDefinition declared : certificate := {{|\n{certificate} |}}.\n\n"
             + f"Definition data : problem := {{|\n  step := declared;\n  places := {places};\n  divisors := {divisors};\n"
             + f"  a_point := {listed(map(str, self.point))}%Z;\n  some_primes := {listed(map(str, self.primes))}%Z;\n"
+            + f"  some_leads := {listed(lead(one) for one in self.divisors)}%positive;\n"
             + f"  rules := {listed(self.rules)} |}}.\n"
         )
 
