@@ -1,10 +1,19 @@
-(* Numbers of a field, their dual numbers, and fractions of polynomials that stand for them.
+(* Numbers of a field with functions, their dual numbers, and fractions of polynomials that stand for them.
 
    Claims are functions over any `ops`. The relation between two of these that all operations keep is kept by each claim: so a
    claim of polynomials, which a computer decides, is one of each field. *)
 
 Require Import ZArith List Bool Lia Ring_polynom InitialRing BinList Field.
 Import ListNotations.
+
+(* Functions that aren't rational; the last two are those of the certificate's page. *)
+Inductive function := Sqrt | Sin | Cos | Exp | Ln | Stumpff (k : nat) | LogRatio (k : nat).
+Definition same_function (f g : function) : bool :=
+  match f, g with
+  | Sqrt, Sqrt | Sin, Sin | Cos, Cos | Exp, Exp | Ln, Ln => true
+  | Stumpff j, Stumpff k | LogRatio j, LogRatio k => Nat.eqb j k
+  | _, _ => false
+  end.
 
 Record ops := {
   T : Type;
@@ -14,8 +23,23 @@ Record ops := {
   mul : T -> T -> T;
   div : T -> T -> T;
   opp : T -> T;
+  call : function -> T -> T;
+  simple : T -> T; (* the number, with less above and below *)
   idle : (unit -> T) -> T (* the value, which a check doesn't need *)
 }.
+
+(* The derivative of a function. *)
+Definition slope (o : ops) (f : function) (x : T o) : T o :=
+  let of z := whole o (Z.of_nat z) in
+  match f with
+  | Sqrt => div o (of 1) (mul o (of 2) (call o Sqrt x))
+  | Sin => call o Cos x
+  | Cos => opp o (call o Sin x)
+  | Exp => call o Exp x
+  | Ln => div o (of 1) x
+  | Stumpff k => div o (sub o (mul o (of k) (call o (Stumpff (2 + k)) x)) (call o (Stumpff (1 + k)) x)) (of 2)
+  | LogRatio k => call o (LogRatio (1 + k)) x
+  end.
 
 (* a + b ε with ε² = 0: of a function at x + ε the second part is the derivative. *)
 Definition dual (o : ops) : ops := {|
@@ -26,6 +50,8 @@ Definition dual (o : ops) : ops := {|
   mul a b := (mul o (fst a) (fst b), add o (mul o (fst a) (snd b)) (mul o (snd a) (fst b)));
   div a b := let q := div o (fst a) (fst b) in (q, div o (sub o (snd a) (mul o q (snd b))) (fst b));
   opp a := (opp o (fst a), opp o (snd a));
+  call f a := (call o f (fst a), mul o (slope o f (fst a)) (snd a));
+  simple a := (simple o (fst a), simple o (snd a));
   idle f := (idle o (fun _ => fst (f tt)), idle o (fun _ => snd (f tt)))
 |}.
 
@@ -36,15 +62,19 @@ Record related (p q : ops) (R : T p -> T q -> Prop) : Prop := {
   of_mul : forall a b x y, R a x -> R b y -> R (mul p a b) (mul q x y);
   of_div : forall a b x y, R a x -> R b y -> R (div p a b) (div q x y);
   of_opp : forall a x, R a x -> R (opp p a) (opp q x);
+  of_call : forall f a x, R a x -> R (call p f a) (call q f x);
+  of_simple : forall a x, R a x -> R (simple p a) (simple q x);
   of_idle : forall f g, R (f tt) (g tt) -> R (idle p f) (idle q g)
 }.
 
 Definition pair {A B} (R : A -> B -> Prop) (a : A * A) (b : B * B) : Prop := R (fst a) (fst b) /\ R (snd a) (snd b).
 
+Lemma slope_related p q R f a x : related p q R -> R a x -> R (slope p f a) (slope q f x).
+Proof. intros [w s t m d n c e i] h; destruct f; cbn [slope]; auto 8. Qed.
 Lemma dual_related p q R : related p q R -> related (dual p) (dual q) (pair R).
 Proof.
-  intros [w a s m d n i]; split; unfold pair; cbn; intros;
-    repeat match goal with H : _ /\ _ |- _ => destruct H end; split; auto 8.
+  intro r; pose proof (fun f a x => slope_related p q R f a x r) as slopes; destruct r as [w a s m d n c e i].
+  split; unfold pair; cbn; intros; repeat match goal with H : _ /\ _ |- _ => destruct H end; split; auto 8.
 Qed.
 
 (* Polynomials with whole coefficients, of the standard library. *)
@@ -61,6 +91,9 @@ Fixpoint ppow (p : poly) (k : nat) : poly := match k with 0 => pc 1 | S m => pmu
 (* The value of a polynomial at whole numbers, by which a divisor's factors are guessed. *)
 Definition at_point (point : list Z) (p : poly) : Z := Pphi 0%Z Z.add Z.mul (fun z => z) point p.
 
+Definition modulo_point (point : list Z) (prime : Z) (p : poly) : Z :=
+  Pphi 0%Z (fun a b => Z.modulo (a + b) prime) (fun a b => Z.modulo (a * b) prime) (fun z => Z.modulo z prime) point p.
+
 (* How often a prime divides a number. *)
 Fixpoint valuation (fuel : nat) (prime z : Z) : nat :=
   match fuel with
@@ -68,8 +101,19 @@ Fixpoint valuation (fuel : nat) (prime z : Z) : nat :=
   | S m => if (z =? 0)%Z || negb (Z.modulo z prime =? 0)%Z then 0 else S (valuation m prime (Z.div z prime))
   end.
 
-(* What may stand below: polynomials, each with a prime that divides its value at the point once, and no other's value. *)
-Record below := { polynomials : list poly; point : list Z; primes : list Z }.
+(* A variable's square as a polynomial, which is put in its place; and q = a + b m for a product m of powers, as a and b. *)
+Definition square := ((Z * Mon) * poly)%type.
+Definition x_to (i j : positive) : Mon := zmon_pred j (vmon i mon0).
+Definition square_of (j : positive) (p : poly) : square := ((1%Z, x_to 2 j), p).
+Definition psubst : poly -> list square -> nat -> poly := PSubstL1 0%Z 1%Z Z.add Z.mul Zeq_bool Z.quotrem.
+Definition parts_by (m : Mon) (q : poly) : poly * poly := MFactor 0%Z 1%Z Zeq_bool Z.quotrem q 1%Z m.
+(* A product of powers of variables, from the variable b on. *)
+Fixpoint power_product (b : positive) (l : list (positive * positive)) : Mon :=
+  match l with [] => mon0 | (j, e) :: r => zmon_pred (Pos.succ j - b) (vmon e (power_product (Pos.succ j) r)) end.
+
+(* The greatest common divisor of the coefficients. *)
+Fixpoint content (p : poly) : Z :=
+  match p with Pc z => z | Pinj _ q => content q | PX q _ r => Z.gcd (content q) (content r) end.
 
 (* Exponents of the polynomials below; those that are left out are zero. *)
 Definition powers := list nat.
@@ -82,38 +126,99 @@ Fixpoint under_ (l : list poly) (d : powers) : poly :=
   | _, _ => pc 1
   end.
 
-(* A fraction; or none, for what isn't known. *)
-Definition frac := option (poly * powers).
+(* A fraction; or the reason why it isn't known: nobody needs it, or something stands below, or a function isn't known there. *)
+Inductive reason := Idle | Below (p : poly) | Call (f : function) (p : poly) (d : powers).
+Inductive frac := Known (p : poly) (d : powers) | Unknown (r : reason).
+
+(* What may stand below: polynomials, each a prime number or with a prime that divides its value at the point once, and no other's
+   value; variables that are square roots, and their squares; values of functions. *)
+Record below := {
+  polynomials : list poly;
+  point : list Z;
+  primes : list Z;
+  leads : list (list (positive * positive)); (* of each a product of powers, with the coefficient one; or none *)
+  roots : list (positive * poly);
+  known : list (function * frac * frac)
+}.
 Section Fractions.
 Variable l : below.
+Definition squares : list square := map (fun r => square_of (fst r) (snd r)) (roots l).
+Definition reduced (p : poly) : poly := match roots l with [] => p | _ => psubst p squares 40 end.
 Definition lifted (p : poly) (d : powers) : poly :=
   if forallb (Nat.eqb 0) d then p else pmul p (under_ (polynomials l) d).
-Definition made (p : poly) (d : powers) : frac := if peq p (pc 0) then Some (pc 0, []) else Some (p, d).
+
+Definition made (p : poly) (d : powers) : frac :=
+  if peq p (pc 0) then Known (pc 0) [] else Known p d.
+
+(* A rest and a quotient by a divisor a + m; and a polynomial without a divisor, with the power that remains of it. *)
+Fixpoint divided (n : nat) (m : Mon) (a p q : poly) : poly * poly :=
+  match n with
+  | 0 => (p, q)
+  | S n => let '(c, b) := parts_by m p in if peq b (pc 0) then (p, q) else divided n m a (psub c (pmul b a)) (padd q b)
+  end.
+Fixpoint without (divisor a : poly) (m : Mon) (prime : Z) (k : nat) (p : poly) : poly * nat :=
+  match k with
+  | 0 => (p, 0)
+  | S j =>
+      if (modulo_point (point l) prime p =? 0)%Z then
+        let '(r, q) := divided 60 m a p (pc 0) in if peq r (pc 0) then without divisor a m prime j q else (p, k)
+      else (p, k)
+  end.
+Fixpoint cancelled (divisors : list poly) (primes : list Z) (leads : list (list (positive * positive))) (p : poly) (d : powers) : poly * powers :=
+  match divisors, primes, leads, d with
+  | divisor :: divisors, prime :: primes, lead :: leads, k :: d =>
+      let m := power_product 1 lead in let '(a, b) := parts_by m divisor in
+      let '(q, j) := match k, lead with 0, _ | _, [] => (p, k) | _, _ => if peq b (pc 1) then without divisor a m prime k p else (p, k) end in
+      let '(r, e) := cancelled divisors primes leads q d in (r, j :: e)
+  | _, _, _, _ => (p, d)
+  end.
+Definition simplified (f : frac) : frac :=
+  match f with Known p d => let '(p, d) := cancelled (polynomials l) (primes l) (leads l) p d in Known p d | u => u end.
 Definition linear (op : poly -> poly -> poly) (f g : frac) : frac :=
   match f, g with
-  | Some (p, d), Some (q, e) => made (op (lifted p (lack d e)) (lifted q (lack e d))) (plus_ d (lack d e))
-  | _, _ => None
+  | Known p d, Known q e => made (op (lifted p (lack d e)) (lifted q (lack e d))) (plus_ d (lack d e))
+  | Unknown r, _ | _, Unknown r => Unknown r
   end.
 Definition fmul (f g : frac) : frac :=
-  match f, g with Some (p, d), Some (q, e) => made (pmul p q) (plus_ d e) | _, _ => None end.
-Definition fopp (f : frac) : frac := match f with Some (p, d) => Some (popp p, d) | None => None end.
+  match f, g with
+  | Known p d, Known q e => made (reduced (pmul p q)) (plus_ d e)
+  | Unknown r, _ | _, Unknown r => Unknown r
+  end.
+Definition fopp (f : frac) : frac := match f with Known p d => Known (popp p) d | u => u end.
+(* A multiplier by which a polynomial has no roots any more. *)
+Definition without_roots (q : poly) : poly :=
+  fst (fold_left (fun found root =>
+    let '(a, b) := parts_by (x_to 1 (fst root)) (snd found) in
+    if peq b (pc 0) then found
+    else let c := if peq a (pc 0) then px (fst root) else psub a (pmul b (px (fst root))) in
+      (reduced (pmul (fst found) c), reduced (pmul (snd found) c)))
+  (roots l) (pc 1, q)).
 Definition factors (q : poly) : powers :=
-  let z := at_point (point l) q in map (fun prime => valuation 40 prime z) (primes l).
+  let c := content q in let z := at_point (point l) q in
+  map (fun pp : poly * Z => match fst pp with Pc p => valuation 40 p c | _ => valuation 40 (snd pp) z end)
+    (combine (polynomials l) (primes l)).
 Definition fdiv (f g : frac) : frac :=
   match f, g with
-  | Some (p, d), Some (q, e) =>
-      let s := factors q in let whole_ := under_ (polynomials l) s in
-      if peq q whole_ then made (lifted p e) (plus_ d s)
-      else if peq q (popp whole_) then made (popp (lifted p e)) (plus_ d s) else None
-  | _, _ => None
+  | Known p d, Known q e =>
+      let m := without_roots q in let r := reduced (pmul q m) in
+      let s := factors r in let whole_ := under_ (polynomials l) s in
+      if peq r whole_ then made (reduced (pmul (lifted p e) m)) (plus_ d s)
+      else if peq r (popp whole_) then made (popp (reduced (pmul (lifted p e) m))) (plus_ d s) else Unknown (Below r)
+  | Unknown r, _ | _, Unknown r => Unknown r
+  end.
+Definition alike (f g : frac) : bool :=
+  match f, g with Known p d, Known q e => peq (lifted p (lack d e)) (lifted q (lack e d)) | _, _ => false end.
+Fixpoint looked_up (f : function) (x : frac) (l : list (function * frac * frac)) : frac :=
+  match l with
+  | (g, a, v) :: rest => if same_function f g && alike a x then v else looked_up f x rest
+  | [] => match x with Known p d => Unknown (Call f p d) | u => u end
   end.
 Definition fractions : ops := {|
-  T := frac; whole z := Some (pc z, []); add := linear padd; sub := linear psub; mul := fmul; div := fdiv; opp := fopp;
-  idle _ := None
+  T := frac; whole z := Known (pc z) []; add := linear padd; sub := linear psub; mul := fmul; div := fdiv; opp := fopp;
+  call f x := looked_up f x (known l);
+  simple := simplified; idle _ := Unknown Idle
 |}.
-Definition alike (f g : frac) : bool :=
-  match f, g with Some (p, d), Some (q, e) => peq (lifted p (lack d e)) (lifted q (lack e d)) | _, _ => false end.
-Definition var (j : positive) : frac := Some (px j, []).
+Definition var (j : positive) : frac := Known (px j) [].
 End Fractions.
 
 Section Field.
@@ -122,8 +227,10 @@ Variables (k0 k1 : K) (kadd kmul ksub kdiv : K -> K -> K) (kopp kinv : K -> K).
 Variable theory : field_theory k0 k1 kadd kmul ksub kopp kdiv kinv (@eq K).
 Add Field field_of_K : theory.
 Definition phi := gen_phiZ k0 k1 kadd kmul kopp.
+Variable apply : function -> K -> K.
 Definition numbers : ops := {|
-  T := K; whole := phi; add := kadd; sub := ksub; mul := kmul; div := kdiv; opp := kopp; idle f := f tt
+  T := K; whole := phi; add := kadd; sub := ksub; mul := kmul; div := kdiv; opp := kopp; call := apply; simple x := x;
+  idle f := f tt
 |}.
 
 Variable env : list K.
@@ -146,6 +253,14 @@ Lemma ev_eq p q : peq p q = true -> ev p = ev q.
 Proof. intro e; exact (Peq_ok equivalence extension morphism p q e env). Qed.
 Lemma ev_x j : ev (px j) = BinList.nth k0 j env.
 Proof. symmetry; exact (mkX_ok equivalence extension almost morphism j env). Qed.
+Definition power : power_theory k1 kmul eq (fun n : N => n) (pow_N k1 kmul) := pow_N_th k1 kmul equivalence.
+Lemma Mphi_x j : Mphi k0 k1 kmul env (x_to 2 j) = kmul (BinList.nth k0 j env) (BinList.nth k0 j env).
+Proof. rewrite <- ev_x; destruct j; cbn; unfold phi; cbn; ring. Qed.
+Lemma ev_psubst n p s : Forall (fun q => Mphi k0 k1 kmul env (snd (fst q)) = ev (snd q) /\ fst (fst q) = 1%Z) s -> ev (psubst p s n) = ev p.
+Proof.
+  intro h; symmetry; apply (PSubstL1_ok equivalence extension almost morphism (Ztriv_div_th equivalence phi)).
+  induction h as [| [[z m] q] s [e o] _ IH]; cbn; auto; split; auto; cbn in e, o; subst z; rewrite e; unfold phi, ev; cbn; ring.
+Qed.
 Lemma ev_0 : ev (pc 0) = k0. Proof. reflexivity. Qed.
 Lemma ev_1 : ev (pc 1) = k1. Proof. reflexivity. Qed.
 
@@ -161,6 +276,14 @@ Proof. induction a; simpl; [rewrite ev_1; ring | rewrite !ev_mul, IHa; ring]. Qe
 Lemma step_ p q a d : ev (under_ (p :: q) (a :: d)) = kmul (ev (ppow p a)) (ev (under_ q d)).
 Proof. destruct a; simpl; [rewrite ev_1; ring | rewrite !ev_mul; ring]. Qed.
 Lemma nothing q : ev (under_ q []) = k1. Proof. destruct q; reflexivity. Qed.
+Definition lawful (r : positive * poly) : Prop := let x := BinList.nth k0 (fst r) env in kmul x x = ev (snd r).
+Hypothesis squared : Forall lawful (roots l).
+Lemma ev_reduced p : ev (reduced l p) = ev p.
+Proof.
+  unfold reduced; destruct (roots l) in |- *; auto; apply ev_psubst.
+  unfold squares; rewrite Forall_map; eapply Forall_impl; [| exact squared].
+  intros [j q] h; cbn [square_of fst snd]; split; auto; rewrite Mphi_x; exact h.
+Qed.
 Lemma under_plus d e : under (plus_ d e) = kmul (under d) (under e).
 Proof.
   unfold under; revert d e; induction (polynomials l) as [| p q IH]; intros d e.
@@ -182,8 +305,8 @@ Proof.
   induction a; simpl; [exact (F_1_neq_0 theory) | rewrite ev_mul; apply product; auto].
 Qed.
 
-(* A fraction stands for a number, none for any. *)
-Definition means (f : frac) (x : K) : Prop := match f with Some (p, d) => ev p = kmul x (under d) | None => True end.
+(* A fraction stands for a number, and what isn't known for any. *)
+Definition means (f : frac) (x : K) : Prop := match f with Known p d => ev p = kmul x (under d) | Unknown _ => True end.
 Lemma zero_powers d : forallb (Nat.eqb 0) d = true -> under d = k1.
 Proof.
   clear sound; unfold under; revert d; induction (polynomials l) as [| p q IH]; intros [| a d]; try reflexivity.
@@ -193,6 +316,40 @@ Lemma ev_lifted p d : ev (lifted l p d) = kmul (ev p) (under d).
 Proof.
   unfold lifted; destruct (forallb _ d) eqn:z; [rewrite (zero_powers d z); ring | apply ev_mul].
 Qed.
+Lemma parts_ok m p : ev p = kadd (ev (fst (parts_by m p))) (kmul (Mphi k0 k1 kmul env m) (ev (snd (parts_by m p)))).
+Proof.
+  pose proof (Mphi_ok equivalence extension almost morphism (Ztriv_div_th equivalence phi) p (1%Z, m) env) as h.
+  unfold parts_by; cbn zeta beta iota in h; destruct (MFactor _ _ _ _ p 1%Z m) as [q r]; cbn [fst snd]; unfold ev at 1; rewrite h.
+  unfold ev, phi; cbn; ring.
+Qed.
+Lemma divided_ok m a d n : ev d = kadd (ev a) (Mphi k0 k1 kmul env m) -> forall p q,
+  let '(r, s) := divided n m a p q in kadd (ev p) (kmul (ev d) (ev q)) = kadd (ev r) (kmul (ev d) (ev s)).
+Proof.
+  intro h; induction n as [| n IH]; intros p q; cbn [divided]; [reflexivity |]; pose proof (parts_ok m p) as e.
+  destruct (parts_by m p) as [c b]; cbn [fst snd] in e; destruct (peq b (pc 0)); [reflexivity |].
+  specialize (IH (psub c (pmul b a)) (padd q b)); destruct (divided n m a _ _) as [r s]; rewrite <- IH, ev_sub, ev_mul, ev_add, e, h; ring.
+Qed.
+Lemma without_ok d a m z : ev d = kadd (ev a) (Mphi k0 k1 kmul env m) -> forall k p,
+  let '(q, j) := without l d a m z k p in kmul (ev q) (ev (ppow d k)) = kmul (ev (ppow d j)) (ev p).
+Proof.
+  intro h; induction k as [| k IH]; intro p; cbn [without]; [ring |]; destruct (_ =? _)%Z; [| ring].
+  pose proof (divided_ok m a d 60 h p (pc 0)) as e; destruct (divided _ _ _ _ _) as [r q]; destruct (peq r (pc 0)) eqn:z0; [| ring].
+  specialize (IH q); destruct (without l d a m z k q) as [s j]; cbn [ppow]; apply ev_eq in z0; rewrite z0, ev_0 in e.
+  assert (p_ : ev p = kmul (ev d) (ev q)) by (transitivity (kadd (ev p) (kmul (ev d) k0)); [ring | rewrite e; ring]).
+  rewrite ev_mul, p_; transitivity (kmul (ev d) (kmul (ev s) (ev (ppow d k)))); [ring | rewrite IH; ring].
+Qed.
+Lemma cancelled_ok ps : forall zs ms p d,
+  let '(q, e) := cancelled l ps zs ms p d in kmul (ev q) (ev (under_ ps d)) = kmul (ev (under_ ps e)) (ev p).
+Proof.
+  clear sound squared; induction ps as [| d ps IH]; intros [| z zs] [| m ms] p [| k e]; cbn [cancelled]; try ring.
+  pose proof (parts_ok (power_product 1 m) d) as h; destruct (parts_by (power_product 1 m) d) as [a b]; cbn [fst snd] in h.
+  match goal with |- context [let '(_, _) := ?x in _] => assert (w : let '(q, j) := x in kmul (ev q) (ev (ppow d k)) = kmul (ev (ppow d j)) (ev p)) end.
+  { destruct k, m; try ring; destruct (peq b (pc 1)) eqn:one; [| ring]; apply ev_eq in one; rewrite one, ev_1 in h.
+    apply without_ok; rewrite h; ring. }
+  destruct (match k with 0 => _ | S _ => _ end) as [q j]; specialize (IH zs ms q e); destruct (cancelled l ps zs ms q e) as [r f].
+  rewrite !step_; transitivity (kmul (ev (ppow d k)) (kmul (ev r) (ev (under_ ps e)))); [ring |]; rewrite IH.
+  transitivity (kmul (ev (under_ ps f)) (kmul (ev q) (ev (ppow d k)))); [ring |]; rewrite w; ring.
+Qed.
 Lemma means_made p d x : ev p = kmul x (under d) -> means (made p d) x.
 Proof.
   unfold made; destruct (peq p (pc 0)) eqn:z; [| exact (fun h => h)].
@@ -200,34 +357,58 @@ Proof.
   rewrite nothing; apply (cancel _ _ (under d)); [apply under_not |].
   transitivity k0; [ring |]; transitivity (ev p); [exact (eq_sym z) | rewrite h; ring].
 Qed.
+Lemma simple_ok f x : means f x -> means (simplified l f) x.
+Proof.
+  destruct f as [p d |]; cbn [simplified]; auto; intro h.
+  pose proof (cancelled_ok (polynomials l) (primes l) (leads l) p d) as c; destruct (cancelled _ _ _ _ p d) as [q e].
+  unfold means in *; apply (cancel _ _ (under d)); [apply under_not |]; unfold under in *; rewrite c, h; ring.
+Qed.
 Lemma linear_ok op (kop : K -> K -> K) f g x y :
   (forall p q, ev (op p q) = kop (ev p) (ev q)) -> (forall a b c, kmul (kop a b) c = kop (kmul a c) (kmul b c)) ->
   means f x -> means g y -> means (linear l op f g) (kop x y).
 Proof.
-  intros ok spread; destruct f as [[p d] |], g as [[q e] |]; cbn [linear]; unfold means at 1 2; auto; try (cbn; auto; fail).
+  intros ok spread; destruct f as [p d |], g as [q e |]; cbn [linear]; unfold means at 1 2; auto; try (cbn; auto; fail).
   intros hp hq; apply means_made; rewrite ok, !ev_lifted, hp, hq, spread; apply f_equal2.
   - rewrite under_plus; ring.
   - rewrite lack_both, under_plus; ring.
 Qed.
-Lemma mul_ok f g x y : means f x -> means g y -> means (fmul f g) (kmul x y).
+Lemma mul_ok f g x y : means f x -> means g y -> means (fmul l f g) (kmul x y).
 Proof.
-  destruct f as [[p d] |], g as [[q e] |]; cbn [fmul]; unfold means at 1 2; try (cbn; auto; fail).
-  intros hp hq; apply means_made; rewrite ev_mul, under_plus, hp, hq; ring.
+  destruct f as [p d |], g as [q e |]; cbn [fmul]; unfold means at 1 2; try (cbn; auto; fail).
+  intros hp hq; apply means_made; rewrite ev_reduced, ev_mul, under_plus, hp, hq; ring.
 Qed.
 Lemma opp_ok f x : means f x -> means (fopp f) (kopp x).
-Proof. destruct f as [[p d] |]; cbn; auto; intro hp; rewrite ev_opp, hp; ring. Qed.
+Proof. destruct f as [p d |]; cbn; auto; intro hp; rewrite ev_opp, hp; ring. Qed.
 Lemma div_ok f g x y : means f x -> means g y -> means (fdiv l f g) (kdiv x y).
 Proof.
-  destruct f as [[p d] |], g as [[q e] |]; cbn [fdiv]; unfold means at 1 2; try (cbn; auto; fail).
-  intros hp hq; set (s := factors l q); cbn zeta; fold (under s).
-  destruct (peq q _) eqn:z; [| destruct (peq q (popp _)) eqn:n; [| cbn; auto]].
+  destruct f as [p d |], g as [q e |]; cbn [fdiv]; unfold means at 1 2; try (cbn; auto; fail).
+  intros hp hq; set (m := without_roots l q); set (r := reduced l (pmul q m)); set (s := factors l r); cbn zeta.
+  assert (hr : ev r = kmul (kmul y (under e)) (ev m)) by (unfold r; rewrite ev_reduced, ev_mul, hq; reflexivity).
+  destruct (peq r _) eqn:z; [| destruct (peq r (popp _)) eqn:n; [| cbn; auto]].
   - apply ev_eq in z; fold (under s) in z; apply means_made.
-    assert (y <> k0) by (intro w; apply (under_not s); rewrite <- z, hq, w; ring).
-    rewrite ev_lifted, under_plus, hp, <- z, hq; field; auto.
+    assert (y <> k0) by (intro w; apply (under_not s); rewrite <- z, hr, w; ring).
+    rewrite ev_reduced, ev_mul, ev_lifted, under_plus, hp, <- z, hr; field; auto.
   - apply ev_eq in n; rewrite ev_opp in n; fold (under s) in n; apply means_made.
-    assert (m : under s = kopp (kmul y (under e))) by (rewrite <- hq, n; ring).
-    assert (y <> k0) by (intro w; apply (under_not s); rewrite m, w; ring).
-    rewrite ev_opp, ev_lifted, under_plus, hp, m; field; auto.
+    assert (m_ : under s = kopp (kmul (kmul y (under e)) (ev m))) by (rewrite <- hr, n; ring).
+    assert (y <> k0) by (intro w; apply (under_not s); rewrite m_, w; ring).
+    rewrite ev_opp, ev_reduced, ev_mul, ev_lifted, under_plus, hp, m_; field; auto.
+Qed.
+Lemma alike_ok f g x y : means f x -> means g y -> alike l f g = true -> x = y.
+Proof.
+  destruct f as [p d |], g as [q e |]; cbn; try discriminate; intros hp hq s; apply ev_eq in s.
+  rewrite !ev_lifted, hp, hq in s; apply (cancel x y (under (plus_ d (lack d e)))); [apply under_not |].
+  transitivity (kmul (kmul x (under d)) (under (lack d e))); [rewrite under_plus; ring |].
+  rewrite s, lack_both, under_plus; ring.
+Qed.
+Definition true_call (c : function * frac * frac) : Prop := let '(f, a, v) := c in exists x, means a x /\ means v (apply f x).
+Hypothesis called : Forall true_call (known l).
+Lemma same_function_ok f g : same_function f g = true -> f = g.
+Proof. destruct f, g; cbn; try discriminate; auto; intro e; apply Nat.eqb_eq in e; subst; auto. Qed.
+Lemma call_ok f a x : means a x -> means (looked_up l f a (known l)) (apply f x).
+Proof.
+  intro h; induction called as [| [[g b] v] rest [y [hb hv]] _ IH]; cbn [looked_up]; [destruct a; exact I |].
+  destruct (same_function f g && alike l b a) eqn:e; [| exact (IH (Forall_inv_tail called))]; apply andb_true_iff in e; destruct e as [e s].
+  apply same_function_ok in e; rewrite e, <- (alike_ok _ _ _ _ hb h s); exact hv.
 Qed.
 Lemma fractions_related : related (fractions l) numbers means.
 Proof.
@@ -238,17 +419,12 @@ Proof.
   - exact mul_ok.
   - exact div_ok.
   - exact opp_ok.
+  - exact call_ok.
+  - exact simple_ok.
   - intros; exact I.
 Qed.
 Lemma var_ok j : means (var j) (BinList.nth k0 j env).
 Proof. cbn -[px]; rewrite ev_x; unfold under; rewrite nothing; ring. Qed.
-Lemma alike_ok f g x y : means f x -> means g y -> alike l f g = true -> x = y.
-Proof.
-  destruct f as [[p d] |], g as [[q e] |]; cbn; try discriminate; intros hp hq s; apply ev_eq in s.
-  rewrite !ev_lifted, hp, hq in s; apply (cancel x y (under (plus_ d (lack d e)))); [apply under_not |].
-  transitivity (kmul (kmul x (under d)) (under (lack d e))); [rewrite under_plus; ring |].
-  rewrite s, lack_both, under_plus; ring.
-Qed.
 Lemma all_alike a x : Forall2 means a x -> forall b y, Forall2 means b y ->
   length a = length b -> forallb (fun p => alike l (fst p) (snd p)) (combine a b) = true -> x = y.
 Proof.

@@ -1,6 +1,6 @@
 (* Each claim keeps the relations that the operations keep; so what holds for fractions of polynomials holds in each field. *)
 
-Require Import ZArith List Bool Lia FMapPositive Field.
+Require Import ZArith List Bool Lia FMapPositive Field Ring_polynom.
 Require Import Liestep.Numbers Liestep.Step.
 Import ListNotations.
 
@@ -40,6 +40,7 @@ Lemma sub_rel a x b y : R a x -> R b y -> R (sub p a b) (sub q x y). Proof. appl
 Lemma mul_rel a x b y : R a x -> R b y -> R (mul p a b) (mul q x y). Proof. apply of_mul; auto. Qed.
 Lemma div_rel a x b y : R a x -> R b y -> R (div p a b) (div q x y). Proof. apply of_div; auto. Qed.
 Lemma opp_rel a x : R a x -> R (opp p a) (opp q x). Proof. apply of_opp; auto. Qed.
+Lemma call_rel f a x : R a x -> R (call p f a) (call q f x). Proof. apply of_call; auto. Qed.
 Lemma ratio_rel z : R (ratio p z) (ratio q z).
 Proof. unfold ratio; destruct (snd z =? 1)%Z; [apply whole_rel | apply div_rel; apply whole_rel]. Qed.
 Lemma at_rel k l m : V l m -> R (at_ p k l) (at_ q k m). Proof. intro; unfold at_; apply (nth_rel R); auto using whole_rel. Qed.
@@ -66,6 +67,7 @@ Ltac rel := repeat (cbn beta zeta; match goal with
   | |- _ (mul _ _ _) (mul _ _ _) => apply mul_rel
   | |- _ (div _ _ _) (div _ _ _) => apply div_rel
   | |- _ (opp _ _) (opp _ _) => apply opp_rel
+  | |- _ (call _ _ _) (call _ _ _) => apply call_rel
   | |- _ (ratio _ _) (ratio _ _) => apply ratio_rel
   | |- _ (at_ _ _ _) (at_ _ _ _) => apply at_rel
   | |- _ (entry _ _ _ _) (entry _ _ _ _) => apply entry_rel
@@ -219,9 +221,55 @@ Proof.
   - rel; apply trace_rel; auto.
   - match goal with a : M (value p t w) _ |- _ => rewrite (rows_rel _ _ a) end; apply inverse_rel; auto.
   - rel.
+  - rel.
   - match goal with a : M (value p t1 w) _, b : M (value p t2 w) _ |- _ =>
       rewrite (rows_rel _ _ a), (columns_rel _ _ a), (columns_rel _ _ b) end; rel.
   - rel.
+Qed.
+
+(* Rules *)
+
+Definition same_call (a : function * T p * T p) (b : function * T q * T q) : Prop :=
+  fst (fst a) = fst (fst b) /\ R (snd (fst a)) (snd (fst b)) /\ R (snd a) (snd b).
+Lemma number_rel t w z : L w z -> R (number_of p t w) (number_of q t z).
+Proof. intro; apply entry_rel, value_rel; auto. Qed.
+Lemma unknown_rel w z k : L w z -> R (unknown p w k) (unknown q z k).
+Proof. intro; apply entry_rel, matrix_rel; auto. Qed.
+Lemma of_nat_rel k : R (of_nat p k) (of_nat q k). Proof. apply whole_rel. Qed.
+Lemma numbered_rel f a x l m : R a x -> V l m -> Forall2 same_call (numbered p f a l) (numbered q f x m).
+Proof.
+  intros h k; unfold numbered; apply seq_rel; [exact (length_rel _ _ _ k) | intro; split; [reflexivity | split; cbn [fst snd]; [exact h | apply at_rel; exact k]]].
+Qed.
+Lemma stumpffs_rel a x n : R a x -> forall j f c d c' d', R c c' -> R d d' -> V (stumpffs p a n j f c d) (stumpffs q x n j f c' d').
+Proof. intro; induction n; cbn [stumpffs]; constructor; auto; apply IHn; rel. Qed.
+Lemma stumpffs_of_0_rel n : forall j f, V (stumpffs_of_0 p n j f) (stumpffs_of_0 q n j f).
+Proof. induction n; cbn [stumpffs_of_0]; constructor; auto; rel. Qed.
+Lemma ratios_rel s t u v n : R s t -> R u v -> forall k b g b' g', R b b' -> R g g' -> V (ratios p s u n k b g) (ratios q t v n k b' g').
+Proof. intros; revert k b g b' g' H1 H2; induction n; cbn [ratios]; intros; constructor; auto; apply IHn; auto; destruct k; rel; apply of_nat_rel. Qed.
+Lemma ratios_of_0_rel n : forall k g g', R g g' -> V (ratios_of_0 p n k g) (ratios_of_0 q n k g').
+Proof. induction n; cbn [ratios_of_0]; constructor; auto; apply IHn; rel; apply of_nat_rel. Qed.
+Lemma calls_rel r w z : L w z -> Forall2 same_call (calls p r w) (calls q r z).
+Proof.
+  intro h; destruct r; cbn [calls]; cbn zeta;
+    repeat match goal with
+    | |- Forall2 _ (_ ++ _) (_ ++ _) => apply Forall2_app
+    | |- Forall2 same_call (numbered _ _ _ _) (numbered _ _ _ _) => apply numbered_rel
+    | |- Forall2 same_call (_ :: _) (_ :: _) => constructor
+    | |- Forall2 same_call [] [] => constructor
+    | |- same_call _ _ => split; [reflexivity | split; cbn [fst snd]]
+    | |- _ (of_nat _ _) (of_nat _ _) => apply of_nat_rel
+    | |- _ (number_of _ _ _) (number_of _ _ _) => apply number_rel
+    | |- _ (unknown _ _ _) (unknown _ _ _) => apply unknown_rel
+    | |- _ (stumpffs _ _ _ _ _ _ _) _ => apply stumpffs_rel
+    | |- _ (stumpffs_of_0 _ _ _ _) _ => apply stumpffs_of_0_rel
+    | |- _ (ratios _ _ _ _ _ _ _) _ => apply ratios_rel
+    | |- _ (ratios_of_0 _ _ _ _) _ => apply ratios_of_0_rel
+    | |- _ (add _ _ _) (add _ _ _) => apply add_rel
+    | |- _ (sub _ _ _) (sub _ _ _) => apply sub_rel
+    | |- _ (mul _ _ _) (mul _ _ _) => apply mul_rel
+    | |- _ (div _ _ _) (div _ _ _) => apply div_rel
+    | |- _ (opp _ _) (opp _ _) => apply opp_rel
+    end; auto.
 Qed.
 End Functions.
 
@@ -427,60 +475,174 @@ Qed.
 
 (* The check *)
 
-(* Places of the variables, and what stands below: numbers of the variables, each array a column. *)
-Record problem := { step : certificate; places : list (list positive); divisors : list text; a_point : list Z; some_primes : list Z }.
+(* Places of the variables, and what stands below: numbers of the variables, each array a column; and rules for functions. *)
+Record problem := {
+  step : certificate;
+  places : list (list positive);
+  divisors : list text;
+  a_point : list Z;
+  some_primes : list Z;
+  some_leads : list (list (positive * positive));
+  rules : list rule
+}.
 
 Definition names (o : ops) (v : list (list (T o))) : list (list (list (T o))) := map (column o) v.
 Definition variables : list (list positive) -> list (list frac) := map (map var).
-Definition nothing_below := {| polynomials := []; point := []; primes := [] |}.
-Definition above (f : frac) : poly := match f with Some (p, []) => p | _ => pc 1 end.
-Definition below_of (c : problem) : below := {|
-  polynomials := map (fun d => above (number_of (fractions nothing_below) d (names (fractions nothing_below) (variables (places c))))) (divisors c);
-  point := a_point c;
-  primes := some_primes c
+Definition with_divisors (l : list poly) (c : problem) : below :=
+  {| polynomials := l; point := a_point c; primes := some_primes c; leads := some_leads c; roots := []; known := [] |}.
+Definition above (f : frac) : poly := match f with Known p [] => p | _ => pc 1 end.
+Definition of_text (c : problem) (l : below) (t : text) : frac :=
+  number_of (fractions l) t (names (fractions l) (variables (places c))).
+Definition place (c : problem) (k : nat) : positive := nth k (nth 12 (places c) []) 1%positive.
+
+(* A root's square is a polynomial, and that of the rule. *)
+Definition root_of (c : problem) (l : below) (r : rule) : list (positive * poly) :=
+  match r with
+  | RootAt a b s k =>
+      let o := fractions l in let b := of_text c l b in
+      match of_text c l s with
+      | Known p [] =>
+          if Nat.ltb k (length (nth 12 (places c) [])) && alike l (Known p []) (mul o (mul o (of_text c l a) b) b) then [(place c k, p)] else []
+      | _ => []
+      end
+  | _ => []
+  end.
+Definition grown (c : problem) (l : below) (r : rule) : below := {|
+  polynomials := polynomials l; point := point l; primes := primes l; leads := leads l;
+  roots := root_of c l r ++ roots l;
+  known := calls (fractions l) r (names (fractions l) (variables (places c))) ++ known l
 |}.
+Definition below_of (c : problem) : below :=
+  fold_left (grown c) (rules c) (with_divisors (map (fun d => above (of_text c (with_divisors [] c) d)) (divisors c)) c).
+
 (* What is found of a claim: nothing, where a number isn't known, as something is divided by what isn't a product of the divisors. *)
-Inductive verdict := Holds | Wrong | Unknown.
-Definition is_known (f : frac) : bool := match f with Some _ => true | None => false end.
+Inductive verdict := Holds | Wrong | Open.
+Definition is_known (f : frac) : bool := match f with Known _ _ => true | Unknown _ => false end.
 Definition found (c : problem) (k : name) : verdict :=
   let l := below_of c in
   let e := claimed k (fractions l) (step c) (variables (places c)) in
   if Nat.eqb (length (fst e)) (length (snd e)) && forallb (fun p => alike l (fst p) (snd p)) (combine (fst e) (snd e)) then Holds
-  else if forallb is_known (fst e) && forallb is_known (snd e) then Wrong else Unknown.
+  else if forallb is_known (fst e) && forallb is_known (snd e) then Wrong else Open.
+
+(* Reasons why numbers of a claim aren't known, with polynomials as lists of terms. Products of many terms are left out: a divisor,
+   or the argument of a function, has few. *)
+Fixpoint terms (p : poly) (j : positive) (m : list (positive * positive)) : list (Z * list (positive * positive)) :=
+  match p with
+  | Pc z => if (z =? 0)%Z then [] else [(z, m)]
+  | Pinj i q => terms q (i + j) m
+  | PX q i r => terms q j ((j, i) :: m) ++ terms r (1 + j) m
+  end.
+(* A function by a number and its order. *)
+Definition code (f : function) : nat * nat :=
+  match f with
+  | Sqrt => (1, 0) | Sin => (2, 0) | Cos => (3, 0) | Exp => (4, 0) | Ln => (5, 0) | Stumpff k => (6, k) | LogRatio k => (7, k)
+  end.
+Fixpoint size_of (p : poly) : N := match p with Pc _ => 1 | Pinj _ q => size_of q | PX q _ r => size_of q + size_of r end.
+Definition is_short (most : N) (f g : frac) : bool :=
+  match f, g with Known p _, Known q _ => N.leb (size_of p * size_of q) most | _, _ => true end.
+Definition short (most : N) (l : below) : ops := let o := fractions l in {|
+  T := frac; whole := whole o; add := add o; sub := sub o; div := div o; opp := opp o; call := call o; simple := simple o; idle := idle o;
+  mul f g := if is_short most f g then mul o f g else Unknown Idle
+|}.
+Definition same_reason (a b : reason) : bool :=
+  match a, b with
+  | Below p, Below q => peq p q
+  | Call f p _, Call g q _ => same_function f g && peq p q
+  | _, _ => false
+  end.
+Definition added (l : list reason) (f : frac) : list reason :=
+  match f with Known _ _ | Unknown Idle => l | Unknown r => if existsb (same_reason r) l then l else r :: l end.
+Definition asked (most : N) (c : problem) (l : list name) : list ((nat * nat) * list (Z * list (positive * positive)) * powers) :=
+  let b := below_of c in
+  let all := flat_map (fun k => let e := claimed k (short most b) (step c) (variables (places c)) in fst e ++ snd e) l in
+  map (fun r => match r with Call f p d => (code f, terms p 1 [], d) | Below p => (0, 0, terms p 1 [], []) | Idle => (0, 0, [], []) end)
+    (fold_left added all []).
 
 Section Sound.
 Variable K : Type.
 Variables (k0 k1 : K) (kadd kmul ksub kdiv : K -> K -> K) (kopp kinv : K -> K).
 Variable theory : field_theory k0 k1 kadd kmul ksub kopp kdiv kinv (@eq K).
 Add Field field_of_K : theory.
-Definition field := numbers K k0 k1 kadd kmul ksub kdiv kopp.
+Variable apply : function -> K -> K.
+Definition field := numbers K k0 k1 kadd kmul ksub kdiv kopp apply.
 Definition values (env : list K) : list (list positive) -> list (list K) := map (map (fun j => BinList.nth k0 j env)).
 
-(* In each field, for all numbers of the variables at which what stands below isn't zero, the equation of the claim. *)
+(* The unknowns of functions have the values of the rules. *)
+Definition obeyed (v : list (list (list K))) (r : rule) : Prop :=
+  Forall (fun c => apply (fst (fst c)) (snd (fst c)) = snd c) (calls field r v) /\
+  match r with
+  | RootAt a b _ k => let b := number_of field b v in
+      kmul (unknown field v k) (unknown field v k) = kmul (kmul (number_of field a v) b) b
+  | _ => True
+  end.
+
+(* In each field, for all functions and numbers of the variables that obey the rules and at which what stands below isn't zero, the
+   equation of the claim. *)
 Definition holds (c : problem) (k : name) : Prop := forall env,
   Forall (fun d => number_of field d (names field (values env (places c))) <> k0) (divisors c) ->
+  Forall (obeyed (names field (values env (places c)))) (rules c) ->
   let e := claimed k field (step c) (values env (places c)) in fst e = snd e.
+
+Section Environment.
+Variable c : problem.
+Variable env : list K.
+Notation ev := (ev K k0 k1 kadd kmul kopp env).
+Notation means := (means K k0 k1 kadd kmul kopp env).
+Notation v := (values env (places c)).
+Definition good (l : below) : Prop :=
+  Forall (fun p => ev p <> k0) (polynomials l) /\ Forall (lawful K k0 k1 kadd kmul kopp env) (roots l) /\
+  Forall (true_call K k0 k1 kadd kmul kopp apply env l) (known l).
+Lemma keeps l : good l -> related (fractions l) field (means l).
+Proof. intros [d [r k]]; apply (fractions_related K k0 k1 kadd kmul ksub kdiv kopp kinv theory); auto. Qed.
+Lemma variables_mean l : Forall2 (Forall2 (means l)) (variables (places c)) v.
+Proof. apply map_same; intro; apply map_same; intro; apply (var_ok K k0 k1 kadd kmul ksub kdiv kopp kinv theory). Qed.
+Lemma names_mean l : Forall2 (Forall2 (Forall2 (means l))) (names (fractions l) (variables (places c))) (names field v).
+Proof. unfold names; eapply map_rel; [apply variables_mean |]; intros ? ? same; apply (column_rel (fractions l) field (means l)); exact same. Qed.
+Lemma text_means l t : good l -> means l (of_text c l t) (number_of field t (names field v)).
+Proof. intro g; apply (number_rel _ _ _ (keeps l g)), names_mean. Qed.
+Lemma place_means k : k < length (nth 12 (places c) []) -> unknown field (names field v) k = BinList.nth k0 (place c k) env.
+Proof.
+  intro h; unfold unknown, place, entry, at_.
+  assert (n : nth 12 (names field v) [] = column field (map (fun j => BinList.nth k0 j env) (nth 12 (places c) []))).
+  { etransitivity; [exact (map_nth (column field) v [] 12) |]; f_equal; exact (map_nth _ (places c) [] 12). }
+  rewrite n; clear n; revert k h; induction (nth 12 (places c) []) as [| j l IH]; intros [| k] h; cbn in h; try lia; [reflexivity |].
+  apply (IH k); lia.
+Qed.
+Lemma root_good l r : good l -> obeyed (names field v) r -> Forall (lawful K k0 k1 kadd kmul kopp env) (root_of c l r).
+Proof.
+  intros g [_ o]; destruct r as [a b s k | | | | | |]; cbn [root_of]; auto; pose proof (keeps l g) as kept.
+  destruct (of_text c l s) as [p [|] |]; auto; destruct (_ && _) eqn:e; auto; apply andb_true_iff in e; destruct e as [t e].
+  apply Nat.ltb_lt in t; constructor; auto; unfold lawful; cbn [fst snd]; cbn zeta in o; rewrite place_means in o by exact t; rewrite o; destruct g as [d [q h]].
+  assert (m : means l (Known p []) (ev p)) by (change (ev p = kmul (ev p) (ev (under_ (polynomials l) []))); rewrite (nothing K k0 k1 kadd kmul kopp); ring).
+  symmetry; refine (alike_ok K k0 k1 kadd kmul ksub kdiv kopp kinv theory env l _ _ _ _ _ m _ e); auto.
+  apply (of_mul _ _ _ kept); [apply (of_mul _ _ _ kept) |]; apply text_means; repeat split; auto.
+Qed.
+Lemma grown_good l r : good l -> obeyed (names field v) r -> good (grown c l r).
+Proof.
+  intros g o; pose proof (root_good l r g o) as new; pose proof (calls_rel _ _ _ (keeps l g) r _ _ (names_mean l)) as same.
+  destruct g as [d [q h]], o as [o _]; repeat split; cbn [grown polynomials roots known]; auto; apply Forall_app; split; auto.
+  clear - same o; induction same as [| [[f a] x] [[g b] y] m n [e [i j]] _ IH]; constructor; [| apply IH; inversion o; auto].
+  cbn in e, i, j; subst g; exists b; split; auto; inversion o as [| ? ? here]; cbn in here; rewrite here; exact j.
+Qed.
+End Environment.
 
 Theorem sound c k : found c k = Holds -> holds c k.
 Proof.
-  unfold found, holds; cbn zeta; intros e env not_zero; destruct (_ && _) eqn:is in e; [clear e; rename is into e | exfalso; revert e; destruct (forallb is_known _ && forallb is_known _); discriminate].
+  unfold found, holds; cbn zeta; intros e env not_zero obey; destruct (_ && _) eqn:is in e; [clear e; rename is into e | exfalso; revert e; destruct (forallb is_known _ && forallb is_known _); discriminate].
   apply andb_true_iff in e; destruct e as [n e]; apply Nat.eqb_eq in n.
-  assert (related_ : forall l, Forall (fun p => ev K k0 k1 kadd kmul kopp env p <> k0) (polynomials l) ->
-    related (fractions l) field (means K k0 k1 kadd kmul kopp env l)) by (intros; apply (fractions_related K k0 k1 kadd kmul ksub kdiv kopp kinv theory); auto).
-  assert (variables_ : forall l, Forall2 (Forall2 (means K k0 k1 kadd kmul kopp env l)) (variables (places c)) (values env (places c))).
-  { intro l; apply map_same; intro; apply map_same; intro; apply (var_ok K k0 k1 kadd kmul ksub kdiv kopp kinv theory). }
-  assert (below_ : Forall (fun p => ev K k0 k1 kadd kmul kopp env p <> k0) (polynomials (below_of c))).
-  { cbn [below_of polynomials]; induction not_zero as [| d l z _ IH]; cbn [map]; constructor; auto.
-    assert (m : means K k0 k1 kadd kmul kopp env nothing_below
-      (number_of (fractions nothing_below) d (names (fractions nothing_below) (variables (places c))))
-      (number_of field d (names field (values env (places c))))).
-    { pose proof (related_ nothing_below (Forall_nil _)) as r; unfold number_of.
-      apply (entry_rel _ _ _ r), (value_rel _ _ _ r); unfold names; eapply map_rel; [apply variables_ |]; intros ? ? same; apply column_rel; exact same. }
-    destruct (number_of (fractions nothing_below) _ _) as [[p [| i q]] |]; try exact (F_1_neq_0 theory).
-    cbn [above]; intro w; apply z; transitivity (ev K k0 k1 kadd kmul kopp env p); [| exact w].
-    symmetry; etransitivity; [exact m |]; generalize (number_of field d (names field (values env (places c)))).
-    intro u; change K in u; change (kmul u k1 = u); ring. }
-  destruct (claimed_rel k (fractions (below_of c)) field _ (related_ _ below_) (step c) _ _ (variables_ _)) as [left right].
-  eapply (all_alike K k0 k1 kadd kmul ksub kdiv kopp kinv theory env (below_of c) below_); eauto.
+  assert (g : good env (below_of c)).
+  { unfold below_of; match goal with |- good _ (fold_left _ _ ?start) => assert (g : good env start) end.
+    - repeat split; cbn [with_divisors polynomials roots known]; auto.
+      induction not_zero as [| d l z _ IH]; cbn [map]; constructor; auto.
+      assert (m := text_means c env (with_divisors [] c) d (conj (Forall_nil _) (conj (Forall_nil _) (Forall_nil _)))).
+      destruct (of_text c (with_divisors [] c) d) as [p [| i q] |]; try exact (F_1_neq_0 theory).
+      cbn [above]; intro w; apply z; transitivity (ev K k0 k1 kadd kmul kopp env p); [| exact w].
+      symmetry; etransitivity; [exact m |]; generalize (number_of field d (names field (values env (places c)))).
+      intro u; change K in u; change (kmul u k1 = u); ring.
+    - revert g; generalize (with_divisors (map (fun d => above (of_text c (with_divisors [] c) d)) (divisors c)) c).
+      induction obey as [| r rest o _ IH]; cbn [fold_left]; intros l g; auto; apply IH, grown_good; auto. }
+  destruct (claimed_rel k (fractions (below_of c)) field _ (keeps env _ g) (step c) _ _ (variables_mean c env _)) as [left right].
+  destruct g as [d [q h]].
+  eapply (all_alike K k0 k1 kadd kmul ksub kdiv kopp kinv theory env (below_of c)); eauto.
 Qed.
 End Sound.

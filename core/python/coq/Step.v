@@ -9,7 +9,8 @@ Import ListNotations.
 (* Data *)
 
 (* An operation of a program, on registers. *)
-Inductive operation := Plus (a b : positive) | Minus (a b : positive) | Times (a b : positive) | Over (a b : positive) | Negative (a : positive).
+Inductive operation := Plus (a b : positive) | Minus (a b : positive) | Times (a b : positive) | Over (a b : positive) | Negative (a : positive)
+| Apply (f : function) (a : positive).
 
 (* A program: registers are numbered from one, as the inputs (an array and an index), the literals n/d, and the operations. *)
 Record program := {
@@ -24,7 +25,7 @@ Inductive text :=
 | Number (n d : Z) | Name (i : nat) | Let (a b : text)
 | Sum (a b : text) | Difference (a b : text) | Product (a b : text) | Scaled (s a : text) | Quotient (a s : text)
 | Opposite (a : text) | Turned (a : text) | Trace (a : text) | Inverse (a : text)
-| Entry (i j : nat) (a : text) | Beside (a b : text) | Above (a b : text).
+| At (f : function) (a : text) | Entry (i j : nat) (a : text) | Beside (a b : text) | Above (a b : text).
 
 Record factor := {
   size : nat;
@@ -63,7 +64,7 @@ Definition squares (c : certificate) : nat := list_sum (map (fun f => size f * s
 Definition set := PositiveMap.t unit.
 Definition has (s : set) (k : positive) : bool := PositiveMap.mem k s.
 Definition read (op : operation) : list positive :=
-  match op with Plus a b | Minus a b | Times a b | Over a b => [a; b] | Negative a => [a] end.
+  match op with Plus a b | Minus a b | Times a b | Over a b => [a; b] | Negative a | Apply _ a => [a] end.
 Definition with_all (l : list positive) (s : set) : set := fold_left (fun s k => PositiveMap.add k tt s) l s.
 Fixpoint needed (k : positive) (l : list operation) (s : set) : set :=
   match l with
@@ -140,6 +141,7 @@ Definition applied (m : registers) (op : operation) : num :=
   | Times a b => get m a * get m b
   | Over a b => div o (get m a) (get m b)
   | Negative a => opp o (get m a)
+  | Apply f a => call o f (get m a)
   end.
 Fixpoint loaded (k : positive) (l : row) (m : registers) : registers :=
   match l with [] => m | x :: r => loaded (Pos.succ k) r (PositiveMap.add k x m) end.
@@ -226,6 +228,7 @@ Fixpoint value (t : text) (names : list mat) : mat :=
   | Turned a => turned (value a names)
   | Trace a => [[trace (value a names)]]
   | Inverse a => let x := value a names in inverse (rows x) x
+  | At f a => [[call o f (entry (value a names) 0 0)]]
   | Entry i j a => [[entry (value a names) i j]]
   | Beside a b => let x := value a names in let y := value b names in
       tab (rows x) (columns x + columns y)%nat (fun i j => if Nat.ltb j (columns x) then entry x i j else entry y i (j - columns x)%nat)
@@ -238,6 +241,60 @@ End Functions.
 Definition scope (o : ops) (c : certificate) (h : T o) (p : list (T o)) (f g w : list (list (list (T o)))) (eta next : list (T o)) :=
   [[h]] :: cut o (parameters c) p ++ f ++ g ++ w ++ [column o eta; column o next].
 
+(* The values of functions at an argument. An unknown stands for each, and what is known is the differential relation: a square root
+   is x/below with x² = argument below²; of sine and cosine t is the tangent of half the angle; and so on. *)
+Inductive rule :=
+| RootAt (argument below square : text) (x : nat) | AngleAt (argument : text) (t : nat) | ExpAt (argument : text) (x : nat)
+| LnAt (argument : text) (x : nat) | StumpffAt (argument : text) (t : nat) | RatioAt (argument : text) (x : nat) | AtOrigin.
+
+Section Rules.
+Variable o : ops.
+Notation num := (T o).
+Notation "a + b" := (add o a b).
+Notation "a - b" := (sub o a b).
+Notation "a * b" := (mul o a b).
+Notation "a / b" := (div o a b).
+Definition of_nat (k : nat) : num := whole o (Z.of_nat k).
+Definition numbered (f : nat -> function) (x : num) (l : list num) : list (function * num * num) :=
+  map (fun k => (f k, x, at_ o k l)) (seq 0 (length l)).
+(* c_j, c_{j+1}, …, with `f` for j!: q c_{j+2} = 1/j! − c_j. *)
+Fixpoint stumpffs (q : num) (n j : nat) (f : Z) (c d : num) : list num :=
+  match n with 0 => [] | S n => c :: stumpffs q n (S j) (f * Z.of_nat (S j)) d ((ratio o (1, f)%Z - c) / q) end.
+Fixpoint stumpffs_of_0 (n j : nat) (f : Z) : list num :=
+  match n with 0 => [] | S n => ratio o (1, f)%Z :: stumpffs_of_0 n (S j) (f * Z.of_nat (S j)) end.
+(* G⁽ᵏ⁾, G⁽ᵏ⁺¹⁾, …: u G⁽ᵏ⁺¹⁾ + (2k + 1) s G⁽ᵏ⁾ = 2k² G⁽ᵏ⁻¹⁾, which begins with u G′ + s G = 1. *)
+Fixpoint ratios (s u : num) (n k : nat) (before g : num) : list num :=
+  match n with
+  | 0 => []
+  | S n =>
+      let right := match k with 0 => of_nat 1 | _ => of_nat (2 * k * k) * before end in
+      g :: ratios s u n (S k) g ((right - of_nat (2 * k + 1) * s * g) / u)
+  end.
+Fixpoint ratios_of_0 (n k : nat) (g : num) : list num :=
+  match n with 0 => [] | S n => g :: ratios_of_0 n (S k) (g * (of_nat (2 * S k * S k) / of_nat (2 * S k + 1))) end.
+(* Unknowns are the entries of the last name. *)
+Definition unknown (names : list (list (list num))) (k : nat) : num := entry o (nth 12 names []) k 0.
+Definition calls (r : rule) (names : list (list (list num))) : list (function * num * num) :=
+  let one := of_nat 1 in let of t := number_of o t names in let x := unknown names in
+  match r with
+  | RootAt a b _ k => [(Sqrt, of a, x k / of b)]
+  | AngleAt a k =>
+      let t := x k in let below := one + t * t in let s := of_nat 2 * t / below in let c := (one - t * t) / below in
+      [(Sin, of a, s); (Cos, of a, c); (Sin, opp o (of a), opp o s); (Cos, opp o (of a), c)]
+  | ExpAt a k => [(Exp, of a, x k); (Exp, opp o (of a), one / x k)]
+  | LnAt a k => [(Ln, of a, x k)]
+  | StumpffAt a k =>
+      let q := of a in let t := x k in let below := one + q * t * t in
+      numbered Stumpff q (stumpffs q 12 0 1 ((one - q * t * t) / below) (of_nat 2 * t / below))
+  | RatioAt a k =>
+      let z := of a in numbered LogRatio z (ratios (one - of_nat 2 * z) (of_nat 2 * z * (one - z)) 8 0 one (x k))
+  | AtOrigin =>
+      let zero := of_nat 0 in
+      [(Sin, zero, zero); (Cos, zero, one); (Exp, zero, one); (Ln, one, zero)] ++
+      numbered Stumpff zero (stumpffs_of_0 12 0 1) ++ numbered LogRatio zero (ratios_of_0 8 0 one)
+  end.
+End Rules.
+
 (* Claims *)
 
 Section Claims.
@@ -245,8 +302,8 @@ Variable o : ops.
 Variable c : certificate.
 Notation row := (list (T o)).
 Notation mat := (list (list (T o))).
-(* The numbers of all variables: h, parameters, y, a, μ, w, coordinates of g, history, displacements before and after, and others
-   of w and g. *)
+(* The numbers of all variables: h, parameters, y, a, μ, w, coordinates of g, history, displacements before and after, others of w
+   and g, and unknowns of functions. *)
 Variable v : mat.
 Definition h := entry o v 0 0.
 Definition p := nth 1 v [].

@@ -59,7 +59,19 @@ class Number:
         return self if other.constant == 1 else Number(node("Quotient", self.node, other.node))
 
     def applied(self, function: str) -> Number:
-        raise field.Declined(f"{function} isn't rational")
+        return Number(node("At", called(function), self.node))
+
+
+FUNCTIONS = {"sqrt": "Sqrt", "sin": "Sin", "cos": "Cos", "exp": "Exp", "ln": "Ln", "stumpff": "(Stumpff {})", "log_ratio": "(LogRatio {})"}
+
+
+def called(function: str) -> str:
+    """A function of a program or a text in Coq."""
+    family, _, order = function.rpartition("_")
+    name = family if order.isdigit() else function
+    if name not in FUNCTIONS:
+        raise field.Declined(f"there is no rule for the function {function}")
+    return FUNCTIONS[name].format(order)
 
 
 class Entries(list[Number]):
@@ -190,8 +202,8 @@ def written(last: Node, names: int = 0) -> str:
     return found
 
 
-def signed(value: int) -> str:
-    return f"({value})" if value < 0 else str(value)
+def signed(value: Any) -> str:
+    return f"({value})" if isinstance(value, int) and value < 0 else str(value)
 
 
 def column(entries: Any) -> Matrix:

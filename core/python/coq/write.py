@@ -1,7 +1,7 @@
 """A certificate as a file of Coq, with a theorem for each claim: ``python write.py FILE.json > Proof.v``.
 
 The claims are those of Step.v, over any field. Standard Python alone is needed, and the folder of `verify` on the path: the
-reading of a declared text is the checker's.
+reading of a declared text is the checker's. Divisors and rules for functions are found by asking Coq, see `Problem.answer`.
 """
 
 from __future__ import annotations
@@ -17,11 +17,9 @@ from typing import Any
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "python" / "liestep"))
 
-from symbols import Matrix, Number, field, motion, node, number, total, written  # noqa: E402
+from polynomials import Polynomial, content, divided, factored, lead, product, stripped  # noqa: E402
+from symbols import FUNCTIONS, Matrix, Number, called, field, motion, node, number, total, written  # noqa: E402
 from verify.text import long_decimals  # noqa: E402
-
-Monomial = tuple[str, ...]
-Polynomial = dict[Monomial, Fraction]
 
 ARRAYS = ("h", "parameters", "half", "target", "momentum", "advected", "attitude", "history", "factors", "constants")
 # Claims by their names in a certificate, with the programs that each is of; without a name, one of all certificates.
@@ -40,6 +38,7 @@ CLAIMS = {
     "Seen": ("seen", ["seen"]),
 }
 OF_TEXTS = ("Work", "Residual", "Momentum")
+RULES = {"sin": "AngleAt", "cos": "AngleAt", "exp": "ExpAt", "ln": "LnAt", "stumpff": "StumpffAt", "log_ratio": "RatioAt"}
 OPERATIONS = {"+": "Plus", "*": "Times", "/": "Over"}
 ACTIONS = {
     "covector": "Covector", "vector": "Vector", "point": "Point", "contravariant tensor": "Contravariant",
@@ -98,36 +97,6 @@ class Factor(motion.Factor):
         return f"{{| size := {self.rows}; is_product := {chart}; generators := {generators}; components := {components} |}}"
 
 
-# Polynomials, whose variables are places in arrays
-
-
-def times(a: Polynomial, b: Polynomial) -> Polynomial:
-    found: Polynomial = {}
-    for m, x in a.items():
-        for k, y in b.items():
-            key = tuple(sorted(m + k))
-            found[key] = found.get(key, Fraction(0)) + x * y
-    return {m: x for m, x in found.items() if x}
-
-
-def plus(a: Polynomial, b: Polynomial, sign: int = 1) -> Polynomial:
-    found = dict(a)
-    for m, x in b.items():
-        found[m] = found.get(m, Fraction(0)) + sign * x
-    return {m: x for m, x in found.items() if x}
-
-
-def determinant(rows: list[list[Polynomial]]) -> Polynomial:
-    if len(rows) == 1:
-        return rows[0][0]
-    found: Polynomial = {}
-    for j, entry in enumerate(rows[0]):
-        if entry:
-            minor = determinant([row[:j] + row[j + 1 :] for row in rows[1:]])
-            found = plus(found, times(entry, minor), -1 if j % 2 else 1)
-    return found
-
-
 class Problem:
     """A certificate, with the variables that its claims are of."""
 
@@ -147,7 +116,10 @@ class Problem:
             self.declined["texts"] = str(reason)
             self.texts = {"energy": "(Number 0 1)", "virtual": "(Number 0 1)"}
         self.programs = {name: self.program(name) for name in ("constants", "target", "newton", "finish", "seen")}
-        self.divisors = self.found_divisors()
+        numbers = [self.literal(one) for program in data["programs"].values() for one in program["literals"]]
+        primes = sorted({p for one in numbers for p in factored(one.denominator)} | {2})
+        self.divisors: list[Polynomial] = [*({(): p} for p in primes), {(1,): 1}]
+        self.rules: list[str] = []
         self.point, self.primes = self.found_point()
 
     def new(self, count: int) -> list[int]:
@@ -165,7 +137,7 @@ class Problem:
             if one["kind"] == "symmetric":
                 own[3], own[6], own[7] = own[1], own[2], own[5]
             parameters += own
-        rest = [free, n, 2 * n, n, n, free, n if in_group else 0]
+        rest = [free, n, 2 * n, n, n, free, n if in_group else 0, 0]
         return [h, parameters, half, target, momentum, *(self.new(count) for count in rest)]
 
     # The declared texts
@@ -212,17 +184,10 @@ class Problem:
 
     def program(self, name: str) -> str:
         data = self.data["programs"][name]
-        functions = {name for name, *_ in data["operations"] if name.isidentifier()}
-        if functions:
-            self.declined[name] = f"{', '.join(sorted(functions))} in `{name}`"
-            data = {"inputs": [], "literals": [], "operations": [], "outputs": []}
         inputs = listed(f"({ARRAYS.index(array)}, {at})" for array, at in data["inputs"])
         literals = listed(rational(self.literal(one)) for one in data["literals"])
         operations = listed(
-            ("Minus" if len(read) == 2 else "Negative") + "".join(f" {at + 1}" for at in read)
-            if sign == "-"
-            else OPERATIONS[sign] + "".join(f" {at + 1}" for at in read)
-            for sign, *read in data["operations"]
+            " ".join([operation(sign, len(read)), *(str(at + 1) for at in read)]) for sign, *read in data["operations"]
         )
         outputs = listed(str(at + 1) for at in data["outputs"]) + "%positive"
         return f"{{| inputs := {inputs};\n  literals := {literals};\n  operations := {operations};\n  outputs := {outputs} |}}"
@@ -232,46 +197,82 @@ class Problem:
         assert found is not None
         return found
 
-    # What stands below
+    # What stands below, and functions
 
-    def found_divisors(self) -> list[Polynomial]:
-        numbers = [self.literal(one) for data in self.data["programs"].values() for one in data["literals"]]
-        primes = sorted({p for one in numbers for p in factored(one.denominator)} | {2})
-        found: list[Polynomial] = [{(): Fraction(p)} for p in primes]
-        found.append({("0 0",): Fraction(1)})
-        if self.data["power"]:
-            found.append(plus({(): Fraction(1)}, {(f"2 {k}",) * 2: Fraction(1) for k in range(self.n)}))
-        used = [array for array in (2, 6, 11) if self.places[array]]
-        for array in used:
-            at = 0
-            for factor in self.factors:
-                for rows in determined(factor, array, at):
-                    one = determinant(rows)
-                    if len(one) > 1 and one not in found:
-                        found.append(one)
-                at += len(factor.generators)
-        return found
+    def answer(self, questions: list[Any]) -> bool:
+        """Takes up what a check has asked for: divisors, and functions at their arguments; whether there was any."""
+        before = len(self.divisors), len(self.rules)
+        for code, order, terms, powers in questions:
+            if code:
+                self.call(list(FUNCTIONS)[code - 1], expanded(terms), powers, order)
+        asked = [expanded(terms) for code, _, terms, _ in questions if not code]
+        for one in sorted(asked, key=len):
+            self.divide(one)
+        self.point, self.primes = self.found_point()
+        return before != (len(self.divisors), len(self.rules))
+
+    def divide(self, one: Polynomial) -> None:
+        """The parts of a polynomial become divisors that have no common parts."""
+        variables, one = stripped(one)
+        new = [{(): p} for p in factored(content(one))] + [{(variable,): 1} for variable in variables]
+        self.divisors += [part for part in new if part not in self.divisors]
+        unit = content(one) * (1 if one[max(one, key=lambda m: (len(m), m))] > 0 else -1)
+        one = {m: x // unit for m, x in one.items()}
+        for other in self.divisors:
+            while len(other) > 1 and (rest := divided(one, other)) is not None:
+                one = rest
+        if len(one) > 1:
+            for at, other in enumerate(self.divisors):
+                while (rest := divided(other, one)) is not None:
+                    self.divisors[at] = other = rest
+            self.divisors.append(one)
+
+    def call(self, function: str, argument: Polynomial, powers: list[int], order: int) -> None:
+        """A rule for a function at argument / (divisors to these powers)."""
+        known = []
+        for one, k in zip(self.divisors, powers, strict=False):
+            while k and (rest := divided(argument, one)) is not None:
+                argument, k = rest, k - 1
+            known.append((one, k))
+        value, x = self.quotient(argument, product(known)), len(self.places[12])
+        if function != "sqrt" and argument == ({(): 1} if function == "ln" else {}):
+            self.rules.append("AtOrigin")
+            return
+        self.places[12] += self.new(1)
+        if function == "sqrt":
+            below = product([(one, (k + 1) // 2) for one, k in known])
+            square = product([(argument, 1), *((one, k % 2) for one, k in known)])
+            self.rules.append(f"RootAt {value} {self.text(below)} {self.text(square)} {x}")
+        else:
+            self.rules.append(f"{RULES[function]} {value} {x}")
+
+    def quotient(self, above: Polynomial, below: Polynomial) -> str:
+        return self.text(above) if below == {(): 1} else f"(Quotient {self.text(above)} {self.text(below)})"
+
+    def text(self, one: Polynomial) -> str:
+        """A polynomial as a text, whose names are the arrays."""
+        place = {variable: (array, at) for array, own in enumerate(self.places) for at, variable in enumerate(own)}
+        terms = []
+        for monomial, x in one.items():
+            terms.append(number(x))
+            for variable in monomial:
+                array, at = place[variable]
+                terms[-1] *= Number(node("Entry", at, 0, node("Name", array)))
+        while len(terms) > 1:
+            terms = [total(terms[at : at + 2]) for at in range(0, len(terms), 2)]
+        return written(total(terms).node)
 
     def found_point(self) -> tuple[list[int], list[int]]:
-        """A point at which each divisor has a prime of its own, once."""
+        """A point at which each divisor has a prime of its own, once; or is one."""
         draw = random.Random(0)
         for size in (100, 1000, 10000, 100000):
             for _ in range(400):
                 point = [draw.randrange(2, size) for _ in range(self.count)]
-                values = [self.at(one, point) for one in self.divisors]
-                primes = [own_prime(values, k) for k in range(len(values))]
+                values = [sum(x * math.prod(point[j - 1] for j in m) for m, x in one.items()) for one in self.divisors]
+                primes = [one[()] if list(one) == [()] else own_prime(value, values) for one, value in zip(self.divisors, values, strict=True)]
                 if all(primes):
                     return point, [p for p in primes if p]
         raise field.Declined("no point tells the divisors apart")
-
-    def at(self, one: Polynomial, point: list[int]) -> int:
-        value = Fraction(0)
-        for monomial, x in one.items():
-            for name in monomial:
-                array, k = map(int, name.split())
-                x = x * point[self.places[array][k] - 1]
-            value += x
-        return int(value)
 
     # The file
 
@@ -281,10 +282,12 @@ class Problem:
         found: dict[str, str | None] = {}
         for name, (of, programs) in CLAIMS.items():
             if of is None or of in made:
-                needed = [*(["constants"] if programs else []), *programs, *(["texts"] if name in OF_TEXTS else [])]
-                reasons = [self.declined[one] for one in needed if one in self.declined]
-                found[name] = reasons[0] if reasons else None
+                found[name] = self.declined.get("texts") if name in OF_TEXTS else None
         return found
+
+    @property
+    def stated(self) -> list[str]:
+        return [name for name, reason in self.claims().items() if not reason]
 
     def written(self) -> str:
         advected = []
@@ -303,13 +306,15 @@ class Problem:
         }
         certificate = ";\n".join(f"  {name} := {part}" for name, part in parts.items())
         places = listed(listed(map(str, array)) + "%positive" for array in self.places)
-        divisors = listed(polynomial(one) for one in self.divisors)
+        divisors = listed(self.text(one) for one in self.divisors)
         return (
             "Require Import ZArith List Field.\nRequire Import Liestep.Numbers Liestep.Step Liestep.Sound.\nImport ListNotations.\n\n"
             + "\n".join(f"(* {comment(text)} *)" for text in self.data["texts"])
             + f"\nDefinition declared : certificate := {{|\n{certificate} |}}.\n\n"
             + f"Definition data : problem := {{|\n  step := declared;\n  places := {places};\n  divisors := {divisors};\n"
-            + f"  a_point := {listed(map(str, self.point))}%Z;\n  some_primes := {listed(map(str, self.primes))}%Z |}}.\n"
+            + f"  a_point := {listed(map(str, self.point))}%Z;\n  some_primes := {listed(map(str, self.primes))}%Z;\n"
+            + f"  some_leads := {listed(lead(one) for one in self.divisors)}%positive;\n"
+            + f"  rules := {listed(self.rules)} |}}.\n"
         )
 
 
@@ -317,61 +322,19 @@ def comment(text: str) -> str:
     return text.replace("(*", "( *").replace("*)", "* )").replace('"', "'")
 
 
-def determined(factor: Factor, array: int, at: int) -> list[list[list[Polynomial]]]:
-    """I ± ŷ for the coordinates at this place of an array, multiplied by a whole number; by a product's chart for each generator."""
-    size, places = factor.rows, range(len(factor.generators))
-    common = 1
-    for entry in (entry for e in factor.listed for entry in e):
-        common = common * entry.denominator // math.gcd(common, entry.denominator)
-    groups = [[k] for k in places] if factor.chart == "product" else [list(places)]
-    found = []
-    for group in groups:
-        for sign in (-1, 1):
-            rows: list[list[Polynomial]] = []
-            for i in range(size):
-                row: list[Polynomial] = []
-                for j in range(size):
-                    entry: Polynomial = {(): Fraction(common)} if i == j else {}
-                    for k in group:
-                        value = factor.listed[k][i * size + j] * common * sign
-                        entry = plus(entry, {(f"{array} {at + k}",): value})
-                    row.append(entry)
-                rows.append(row)
-            found.append(rows)
-    return found
+def own_prime(value: int, values: list[int]) -> int | None:
+    """A prime that divides a value once, and no other one."""
+    return next((p for p in factored(value) if value % (p * p) and sum(not other % p for other in values) == 1), None) if value else None
 
 
-def factored(value: int) -> list[int]:
-    """The prime factors of a number, as far as they are small."""
-    found, value, p = [], abs(value), 2
-    while value > 1 and p < 100000:
-        if p * p > value:
-            return [*found, value]
-        while value % p == 0:
-            found.append(p)
-            value //= p
-        p += 1
-    return found
+def expanded(terms: list[Any]) -> Polynomial:
+    return {tuple(sorted(j for j, k in powers for _ in range(k))): x for x, powers in terms}
 
 
-def own_prime(values: list[int], k: int) -> int | None:
-    if not values[k]:
-        return None
-    factors = factored(values[k])
-    rest = [value for at, value in enumerate(values) if at != k]
-    return next((p for p in factors if factors.count(p) == 1 and all(value % p for value in rest)), None)
-
-
-def polynomial(one: Polynomial) -> str:
-    """A polynomial as a text, whose names are the arrays."""
-    found = number(0)
-    for monomial, x in one.items():
-        term = number(x)
-        for name in monomial:
-            array, k = map(int, name.split())
-            term = term * Number(node("Entry", k, 0, node("Name", array)))
-        found = found + term
-    return written(found.node)
+def operation(sign: str, reads: int) -> str:
+    if sign == "-":
+        return "Minus" if reads == 2 else "Negative"
+    return OPERATIONS.get(sign) or f"Apply {called(sign)}"
 
 
 FIELD = "K k0 k1 kadd kmul ksub kdiv kopp"
@@ -380,20 +343,24 @@ FIELD = "K k0 k1 kadd kmul ksub kdiv kopp"
 def theorem(name: str) -> str:
     return (
         f"\nLemma {name}_found : found data {name} = Holds. Proof. vm_cast_no_check (eq_refl Holds). Qed.\n"
-        f"Definition {name}_holds K k0 k1 kadd kmul ksub kdiv kopp kinv (theory : field_theory k0 k1 kadd kmul ksub kopp kdiv kinv (@eq K)) :\n"
-        f"  holds {FIELD} data {name} := sound {FIELD} kinv theory data {name} {name}_found.\n"
+        f"Definition {name}_holds K k0 k1 kadd kmul ksub kdiv kopp kinv (theory : field_theory k0 k1 kadd kmul ksub kopp kdiv kinv (@eq K)) apply :\n"
+        f"  holds {FIELD} apply data {name} := sound {FIELD} kinv theory apply data {name} {name}_found.\n"
     )
 
 
-def proof(data: dict[str, Any], verdicts: bool = False) -> tuple[str, dict[str, str | None]]:
-    """The file of a certificate, with proofs or with what is found of each claim; and its claims, with the reasons of those left out."""
-    problem = Problem(data)
-    claims = problem.claims()
-    stated = [name for name, reason in claims.items() if not reason]
-    parts = [f"Eval vm_compute in ({name}, found data {name}).\n" if verdicts else theorem(name) for name in stated]
-    every = "" if verdicts else "\nDefinition all := (" + ", ".join(f"@{name}_holds" for name in stated) + ").\nPrint Assumptions all.\n"
-    return problem.written() + "".join(parts) + every, claims
+def proof(problem: Problem) -> str:
+    """The file of a certificate, with a proof of each claim that is stated."""
+    stated = problem.stated
+    every = ", ".join(f"@{name}_holds" for name in stated)
+    return problem.written() + "".join(map(theorem, stated)) + f"\nDefinition all := ({every}).\nPrint Assumptions all.\n"
 
 
-if __name__ == "__main__":
-    print(proof(json.loads(Path(sys.argv[1]).read_text(encoding="utf-8")))[0])
+def verdicts(problem: Problem) -> str:
+    """The file of a certificate, with what is found of each claim."""
+    return problem.written() + "".join(f"Eval vm_compute in ({name}, found data {name}).\n" for name in problem.stated)
+
+
+def questions(problem: Problem, most: int) -> str:
+    """The file of a certificate, with what a check asks for; products of more terms are left out."""
+    printing = "Set Printing Depth 1000000.\nSet Printing Width 1000.\n"
+    return problem.written() + printing + f"Eval vm_compute in asked {most} data {listed(problem.stated)}.\n"
