@@ -233,3 +233,34 @@ fn a_rotor_in_a_slider() {
             < 1e-12
     );
 }
+
+/// Friction that is sharp beside a step: each step is solved, the mass stops within a step's way, and its speed never grows. A step's
+/// impulse comes in two halves, so a friction whose half stops the mass turns its momentum round, as the implicit midpoint
+/// rule does.
+#[test]
+fn sharp_friction_is_solved() {
+    let axis = Vector3::z();
+    for m in [1.0, 100.0] {
+        for force in [1e3, 1e5] {
+            for speed in [1e-2, 1e-3, 1e-4, 1e-6] {
+                let mut system = Multibody::new();
+                let mass = system.body(floating(m, [0.2; 3]));
+                system.join(Joint::slider([Vector3::zeros(); 2], axis, Matrix3::identity()), None, mass);
+                system.between([None, Some(mass)], SliderFriction { force, speed, axis });
+                let stepper = system.stepper(5e-3).unwrap();
+                let start = six([0.0; 3], (axis * 2.0).into());
+                let mut state = stepper.start(&[at(0.0, 0.0, 0.0)], &[start]).unwrap();
+                let stops = (m * 2.0 * 2.0 / (2.0 * force)).max(2.0 * 5e-3);
+                let mut before = 2.0;
+                for _ in 0..100 {
+                    stepper.step(&mut state).unwrap();
+                    let now = stepper.velocity(&state, mass)[5].abs();
+                    assert!(now <= before * (1.0 + 1e-12), "{m} {force} {speed}: {now} {before}");
+                    before = now;
+                }
+                let way = position(&stepper, &state, mass)[2];
+                assert!(way > 0.0 && way < 1.1 * stops, "{m} {force} {speed}: {way} {stops}");
+            }
+        }
+    }
+}

@@ -140,6 +140,9 @@ pub struct SliderDamping {
 
 /// Dry friction in a slider, regularised: the force `−f v/√(v² + u²)` against the velocity `v` of [`SliderDamping`]. Faster than the
 /// speed `u` it is nearly `f`; slower than that it is viscous, so that a slider creeps where it would stick.
+///
+/// An impulse of half a step, `h f/2`, that is larger than the momentum turns the velocity round at nearly its size: places then stay, and
+/// shorter steps or a larger `u` have a velocity that falls to zero.
 #[force(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
     advected(R_1 = F_1.seen_from(space), r = d_2.seen_from(d_1)),
