@@ -255,7 +255,7 @@ fn sharp_friction_is_solved() {
                 for _ in 0..100 {
                     stepper.step(&mut state).unwrap();
                     let now = stepper.velocity(&state, mass)[5].abs();
-                    assert!(now <= before * (1.0 + 1e-12), "{m} {force} {speed}: {now} {before}");
+                    assert!(now <= before * (1.0 + 1e-12) || now < 1e-9, "{m} {force} {speed}: {now} {before}");
                     before = now;
                 }
                 let way = position(&stepper, &state, mass)[2];

@@ -1,6 +1,8 @@
 //! Whole steps on groups that a text declares: order, momentum in space and the group's relation; compositions,
 //! substeps and prescribed values as by typed steppers; errors.
 
+#[path = "whole/compensated.rs"]
+mod compensated;
 #[path = "whole/motions.rs"]
 mod motions;
 #[path = "whole/own_factors.rs"]

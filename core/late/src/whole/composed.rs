@@ -66,6 +66,11 @@ impl Stages {
         &self.constants[0]
     }
 
+    /// The constants of a composition's stage.
+    pub(super) fn constants(&self, stage: usize) -> &StepConstants {
+        &self.constants[self.list[stage].constants]
+    }
+
     /// The number of stages.
     pub(super) fn count(&self) -> usize {
         self.list.len().max(1)
@@ -118,7 +123,7 @@ impl Stages {
             return Ok(iterations);
         }
         self.each(numbered, state, room, &mut |stage, next, room| {
-            let constants = &self.constants[self.list[stage].constants];
+            let constants = self.constants(stage);
             watch(constants, next);
             let made = numbered.increment(constants, next, room)?;
             watch(constants, next);

@@ -11,6 +11,7 @@ use liestep_derivation::whole::Form;
 
 use super::codes::Codes;
 use super::collocation::Collocation;
+use super::compensated::CompensatedSums;
 use super::course::Course;
 use super::hamiltonian::Hamiltonian;
 use super::rotating::RotatingScene;
@@ -43,9 +44,9 @@ const fn refused<T>(cause: &'static str) -> Result<T, WholeError> {
 
 /// The stepper of a declaration with the [numbers](Declaration::numbers) of all its parameters, the step `h`, s, and a method.
 ///
-/// The declared step and its compositions are those of [`Whole`] on any group; those of a Hamiltonian need a momentum at the
-/// start. Collocation takes the continuous limit of the
-/// Lagrangian, on any group that linear and quadratic relations define. Splittings, the exact motion and compensated sums are
+/// The declared step and its compositions are those of [`Whole`] on any group, also with compensated sums; those of a Hamiltonian
+/// need a momentum at the start. Collocation takes the continuous limit of the
+/// Lagrangian, on any group that linear and quadratic relations define. Splittings and the exact motion are
 /// those of [`Method::stepper`], on SO(3) alone.
 ///
 /// # Examples
@@ -132,6 +133,9 @@ pub fn stepper<B: Backend<f64>>(
             }
         }
         _ if on_rotations => on_so3(),
+        Scheme::Step | Scheme::Composition(_) => {
+            Ok(AnyStepper::new(CompensatedSums::<B>::of(declaration, numbers, h, method)?))
+        }
         _ => {
             method.composition()?;
             refused("is for SO3, where the motion of a free body is known; take a composition here")

@@ -17,7 +17,8 @@
 //! [`Propagator`](liestep::motion::Propagator). Methods of SO(3) alone are the library's own, by a scene that runs programs.
 //!
 //! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
-//! `methods → {collocation, hamiltonian, rotating, density}`, `{collocation, hamiltonian} → stepper`,
+//! `methods → {collocation, compensated, hamiltonian, rotating, density}`,
+//! `{collocation, compensated, hamiltonian} → stepper`,
 //! `steered → {plant, forwards}`,
 //! `{density, forwards → {derivatives → tape, tangent} → {varied → course, slopes → limit}, pace} → {stepper, lengths}`,
 //! `inputs → {tangent → composed, limit}` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
@@ -28,6 +29,7 @@ mod algebra;
 mod care;
 mod codes;
 mod collocation;
+mod compensated;
 mod composed;
 mod constants;
 mod course;

@@ -72,7 +72,7 @@ impl<'a, B: Backend<f64>> StepCodes<'a, B> {
 
     /// Counts a step whose increment was made; returns its iterations.
     #[inline]
-    fn count(self, Increment { iterations, is_far }: Increment, state: &mut [f64]) -> u32 {
+    pub(super) fn count(self, Increment { iterations, is_far }: Increment, state: &mut [f64]) -> u32 {
         let (sizes, last) = (&self.codes.sizes, state.len() - 1);
         if is_far {
             state.copy_within(sizes.history()..sizes.history() + sizes.n, sizes.guess());

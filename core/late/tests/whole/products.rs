@@ -22,7 +22,7 @@ use nalgebra::{Matrix3, Matrix4, SVector, Vector3, Vector4};
             + (F.transpose() * w).dot(&weight) * (1.0 + c * (Q.transpose() * u).z)),
 )]
 #[derive(Clone, Debug)]
-struct BodyAndWheel {
+pub(crate) struct BodyAndWheel {
     K: Matrix4<f64>,
     J: Matrix3<f64>,
     weight: Vector4<f64>,
@@ -60,7 +60,7 @@ const WEIGHT: [f64; 4] = [0.3, -0.2, 0.4, 7.0];
 const TURNS: [[f64; 3]; 2] = [[0.3, -0.7, 1.1], [0.9, 0.4, -2.0]];
 const SPEED: [f64; 3] = [0.2, 0.5, -0.4];
 
-fn scene() -> BodyAndWheel {
+pub(crate) fn scene() -> BodyAndWheel {
     let mut K = Matrix4::zeros();
     K.fixed_view_mut::<3, 3>(0, 0).copy_from(&Matrix3::from_row_slice(&BODY));
     K[(3, 3)] = 1.3;
@@ -144,7 +144,7 @@ fn the_compiled_step_is_that_of_the_text() {
     let whole = whole(declaration, &values, 100);
     let entries: Vec<f64> = identity(4).chain(identity(3)).collect();
     let mut data = whole.start(&entries, velocity.as_slice()).expect("a start");
-    for step in 0..10_000 {
+    for step in 0..2_000 {
         assert_eq!(stepper.step(&mut state), whole.step(&mut data), "step {step}");
         let mut entries = Vec::new();
         state.attitude().0.matrix().each(&mut |entry| entries.push(entry));

@@ -169,7 +169,7 @@ class Stepper:
         On SO(3) ``{"turn": 1.0}``: the first step is about `step`, and in each the body turns by about as much, from this
         velocity on, rad/s. Reversible; without members of an ensemble, a force, or another method.
     compensated : bool
-        Whether what rounding takes from sums is added to the next.
+        Whether what rounding takes from sums is added to the next; off SO(3) without `substeps`.
     substeps : int
         Into how many parts a step is divided at most that has no solution.
 

@@ -299,8 +299,13 @@ impl MatrixFactor {
 
     /// `g F = g + g D`.
     pub(super) fn advanced(&self, words: &mut Words, g: &Matrix, d: &Matrix) -> Matrix {
-        let change = if self.form == Form::Translation { d.clone() } else { g.times(words, d) };
+        let change = self.change(words, g, d);
         g.plus(words, &change)
+    }
+
+    /// `g F − g = g D`.
+    pub(super) fn change(&self, words: &mut Words, g: &Matrix, d: &Matrix) -> Matrix {
+        if self.form == Form::Translation { d.clone() } else { g.times(words, d) }
     }
 
     /// A number whose product with the square of `s` is below one if `s` times half the coordinates is near the identity;

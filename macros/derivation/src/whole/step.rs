@@ -215,6 +215,17 @@ impl WholeStep {
         Ok(Self { sizes, factors: writer.factors, programs })
     }
 
+    /// Writes the changes of attitude, momentum and advected parameters that the program `finish` adds to them, of its inputs.
+    /// Advected parameters after the step, which a force may see, have the rounding errors in the array of factors added to
+    /// their change.
+    ///
+    /// # Errors
+    ///
+    /// The reason why there is no step.
+    pub fn changes(staged: &StagedDeclaration) -> Result<Program, StepRefusal> {
+        Ok(Writer::of(staged)?.changes())
+    }
+
     /// Writes the tangent map of a step along one direction: `(ζ⁺, δμ⁺)` after the step, of half, momentum, advected and
     /// constants, for a displacement `ζ` in the array of velocities and a change `δμ` in that of histories.
     ///
@@ -355,29 +366,65 @@ impl Writer<'_> {
         self.factors.iter().filter_map(|factor| factor.nearness(words, factor.own(half))).collect()
     }
 
+    /// The changes have no rounding of the momentum's size: the kick before the solve is taken for itself, not as `a − μ`.
+    fn changes(&self) -> Program {
+        let (mut words, half) = (Words::default(), Value::inputs(Array::Half, self.dimension()));
+        let d = self.increments(&mut words, &half);
+        let errors = Value::inputs(Array::Factors, self.carried);
+        let mut moved = Vec::new();
+        for (w, carried) in self.advected(Array::Advected).iter().zip(&self.staged.carried) {
+            moved.extend(change(&mut words, &self.factors, carried.action, w, &d).entries);
+        }
+        let corrected = words.added(&moved, &errors);
+        let next = words.added(&Value::inputs(Array::Advected, self.carried), &corrected);
+        let before = self.staged.parts[1].then(|| words.append(&self.staged.programs.kick_before, Value::Input));
+        let kicks = match (before, self.kick_after(&mut words, &d, &next)) {
+            (Some(before), Some(after)) => Some(words.added(&before, &after)),
+            (before, after) => before.or(after),
+        };
+        let mut momentum = self.turned(&mut words, &d, &Value::inputs(Array::Target, self.dimension()));
+        if let Some(kicks) = kicks {
+            momentum = words.added(&momentum, &kicks);
+        }
+        let mut all = Vec::new();
+        for (factor, d) in self.factors.iter().zip(&d) {
+            let g = factor.read(Array::Attitude);
+            all.extend(factor.change(&mut words, &g, d).entries);
+        }
+        words.program(&[all, momentum, moved].concat())
+    }
+
     /// The momentum after the step: `μ + (Ad*_F a − a) + (a − μ)` and the kick after the solve.
     fn transported(&self, words: &mut Words, d: &[Matrix], next: &[Value]) -> Vec<Value> {
-        let (n, stages) = (self.dimension(), &self.staged.programs);
+        let n = self.dimension();
         let (momentum, target) = (Value::inputs(Array::Momentum, n), Value::inputs(Array::Target, n));
         let target = self.reacted(words, &Value::inputs(Array::Half, n), &target);
-        let [_, has_before, has_after] = self.staged.parts;
-        let factors = self.factors.iter().zip(d);
-        let mut moved: Vec<Value> =
-            factors.flat_map(|(factor, d)| factor.coadjoint_change(words, d, factor.own(&target))).collect();
-        if has_before || self.is_constrained() {
+        let mut moved = self.turned(words, d, &target);
+        if self.staged.parts[1] || self.is_constrained() {
             let kick = words.subtracted(&target, &momentum);
             moved = words.added(&moved, &kick);
         }
-        if has_after {
-            let read = |source: Source| match source.array {
-                Array::Next => next[source.at],
-                _ => Value::Input(source),
-            };
-            let kick = self.with_increments(words, &stages.kick_after, d, &read);
+        if let Some(kick) = self.kick_after(words, d, next) {
             moved = words.added(&moved, &kick);
         }
         let momentum = words.added(&momentum, &moved);
         self.projected(words, &momentum, next)
+    }
+
+    /// `Ad*_F a − a`.
+    fn turned(&self, words: &mut Words, d: &[Matrix], target: &[Value]) -> Vec<Value> {
+        let factors = self.factors.iter().zip(d);
+        factors.flat_map(|(factor, d)| factor.coadjoint_change(words, d, factor.own(target))).collect()
+    }
+
+    /// The kick after the solve, if there is one.
+    fn kick_after(&self, words: &mut Words, d: &[Matrix], next: &[Value]) -> Option<Vec<Value>> {
+        let read = |source: Source| match source.array {
+            Array::Next => next[source.at],
+            _ => Value::Input(source),
+        };
+        let program = &self.staged.programs.kick_after;
+        self.staged.parts[2].then(|| self.with_increments(words, program, d, &read))
     }
 
     fn attitudes(&self) -> Vec<Matrix> {

@@ -6,6 +6,7 @@ use syn::punctuated::Punctuated;
 use syn::spanned::Spanned as _;
 use syn::{Expr, ExprArray, Token, parenthesized};
 
+use crate::declared::Factor;
 use crate::declared::errors::Errors;
 use crate::mathematics::group::{Defect, Group};
 use crate::mathematics::symbolic::Rational;
@@ -81,6 +82,16 @@ impl Generators {
             }
         }
     }
+}
+
+/// The place of each generator: its own in a user's group, else that of the increment.
+pub(super) fn places(group: &Group, factors: &[Factor], generators: Option<&Generators>) -> Vec<Span> {
+    let of_factor = |(factor, own): (&Factor, &Group)| {
+        let own_places = generators.map(|all| all.places(&factor.group_name())).unwrap_or_default();
+        let place = move |k: usize| own_places.get(k).copied().unwrap_or(factor.place);
+        (0..own.dimension()).map(place).collect::<Vec<_>>()
+    };
+    factors.iter().zip(group.factors()).flat_map(of_factor).collect()
 }
 
 /// The array of generators, read when the group is known.

@@ -24,7 +24,7 @@ use crate::mathematics::derive::View;
 use crate::mathematics::group::Group;
 use arguments::{Arguments, Source, arguments_from};
 use fields::{points, scalar, vector_type};
-use generators::Generators;
+use generators::places;
 use names::{check_names, displacements, velocities};
 
 pub use fields::{field_kind, scalar_of};
@@ -213,16 +213,6 @@ fn groups(arguments: &mut Arguments, is_readable: bool, errors: &mut Errors) -> 
         let (path, group) = group::group(named, arguments.generators.as_ref(), is_readable, errors);
         (path.clone(), group, vec![Factor { name, place, path }])
     }
-}
-
-/// The place of each generator: its own in a user's group, else that of the increment.
-fn places(group: &Group, factors: &[Factor], generators: Option<&Generators>) -> Vec<Span> {
-    let of_factor = |(factor, own): (&Factor, &Group)| {
-        let own_places = generators.map(|all| all.places(&factor.group_name())).unwrap_or_default();
-        let place = move |k: usize| own_places.get(k).copied().unwrap_or(factor.place);
-        (0..own.dimension()).map(place).collect::<Vec<_>>()
-    };
-    factors.iter().zip(group.factors()).flat_map(of_factor).collect()
 }
 
 /// The message for a missing expression.
