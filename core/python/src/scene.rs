@@ -137,7 +137,7 @@ impl Scene {
         let (attitude, velocity) = (start.attitude(&layout.factors)?, start.velocity(&layout.factors)?);
         let question = Question { accuracy, attitude: &attitude, velocity };
         let own: Option<Rc<dyn liestep_late::Course>> = self.has_changes().then(|| Rc::new(self.course()) as Rc<_>);
-        let found = for_accuracy::<Backend>(self.declaration, &self.numbers, own, question);
+        let found = for_accuracy::<Backend>(self.declaration, &self.numbers, own.as_ref(), question);
         // A trial by longer steps may have left the values of a signal.
         let cause = self.changes.cause();
         let (stepper, choice) = found.map_err(|error| match error {

@@ -156,9 +156,11 @@ def test_a_pivot_that_is_shaken_holds_a_pendulum_upright():
     assert tilts[0] < 0.3 and tilts[1] > 3
 
 
-def test_runs_to_an_accuracy_take_the_declared_step():
+def test_runs_to_an_accuracy_choose_a_method():
     run = pushed().for_accuracy(1e-5, velocity=[0.1, 0, 1], until=4)
-    assert run.error < 1e-5 and run.method == {}
+    fine = pushed().stepper(2e-4).run(velocity=[0.1, 0, 1], until=4)
+    assert run.error < 1e-5 and "composition" in run.method
+    assert abs(run.matrix[-1] - fine.matrix[-1]).max() < 1e-5
     assert run.momentum[-1, 2] == pytest.approx(7, abs=1e-12)
 
 

@@ -184,7 +184,7 @@ pub enum QuestionError {
 pub fn for_accuracy<B: Backend<f64>>(
     declaration: &'static Declaration,
     numbers: &[f64],
-    course: Option<Rc<dyn Course>>,
+    course: Option<&Rc<dyn Course>>,
     question: Question<'_>,
 ) -> Result<(AnyStepper, Choice), QuestionError> {
     if declaration.energy.is_some() {
@@ -199,7 +199,7 @@ pub fn for_accuracy<B: Backend<f64>>(
         schemes.extend(SO3::schemes(&scene));
     }
     let candidate = |scheme| {
-        let (numbers, course, method) = (numbers.to_vec(), course.clone(), Method::from(scheme));
+        let (numbers, course, method) = (numbers.to_vec(), course.cloned(), Method::from(scheme));
         let make = move |h| {
             let made = match &course {
                 None => stepper::<B>(declaration, &numbers, h, method),

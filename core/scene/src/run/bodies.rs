@@ -25,7 +25,7 @@ use crate::file::orbit::Time;
 use crate::file::part::{Between, SystemBody};
 use crate::file::scene::SceneFile;
 use crate::file::system::{Spring, System};
-use crate::run::devices::{BodyInput, Mechanism};
+use crate::run::mechanism::{BodyInput, Mechanism};
 use crate::run::nearest::BodyState;
 
 /// A body with its weight. One of the three kinetic terms has the factor one, the others zero.

@@ -121,8 +121,9 @@ pub(crate) fn searched(file: &SceneFile, accuracy: Accuracy) -> Result<Choice, S
     let state = file.start.state(&stepper).map_err(Stop::Start)?;
     let velocity = if file.start.is_by_momentum { stepper.velocity(&state) } else { file.start.velocity.clone() };
     let question = Question { accuracy, attitude: &file.start.attitude, velocity: &velocity };
-    let parameters = file.changing().map(|_| Rc::new(Parameters::of(file.clone(), J, data.sum)));
-    match for_accuracy::<Backend>(data.sum, &data.numbers, parameters.map(|all| all as Rc<dyn Course>), question) {
+    let parameters = || Rc::new(Parameters::of(file.clone(), J, data.sum)) as Rc<dyn Course>;
+    let course = file.changing().map(|_| parameters());
+    match for_accuracy::<Backend>(data.sum, &data.numbers, course.as_ref(), question) {
         Ok((_, choice)) => Ok(choice),
         Err(QuestionError::Whole(error)) => Err(whole_error(error)),
         Err(QuestionError::Accuracy(error)) => Err(Stop::Accuracy(error)),

@@ -8,6 +8,7 @@ pub(crate) mod devices;
 mod ends;
 mod events;
 pub(crate) mod make;
+mod mechanism;
 mod memory;
 pub(crate) mod model;
 mod motors;

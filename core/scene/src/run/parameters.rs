@@ -10,7 +10,7 @@ use liestep_late::{Course, Declaration};
 use crate::file::control::locked;
 use crate::file::scene::SceneFile;
 use crate::run::data::{LibraryBody, Whole, numbers};
-use crate::run::devices::{BodyInput, Mechanism};
+use crate::run::mechanism::{BodyInput, Mechanism};
 
 /// The terms of a file, whose numbers are found at any time.
 pub(crate) struct Parameters {

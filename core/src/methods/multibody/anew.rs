@@ -53,7 +53,7 @@ impl MultibodyStepper {
     /// };
     /// let (h, steps) = (0.4, 10);
     /// let mut stepper = system(0.0).stepper(h)?;
-    /// let mut state = stepper.start(&[(SO3::identity(), R3::identity()); 2], &[Vector6::zeros(); 2])?;
+    /// let mut state = stepper.start(&[(SO3::identity(), R3::from(Vector3::zeros())); 2], &[Vector6::zeros(); 2])?;
     /// for step in 0..steps {
     ///     let [begin, end] = [step, step + 1].map(|step| (f64::from(step) * h).clamp(0.7, 2.2));
     ///     stepper = stepper.with(system(2.0 * (end - begin) / h), h)?;
