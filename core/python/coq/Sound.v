@@ -524,7 +524,7 @@ Definition found (c : problem) (k : name) : verdict :=
   if Nat.eqb (length (fst e)) (length (snd e)) && forallb (fun p => alike l (fst p) (snd p)) (combine (fst e) (snd e)) then Holds
   else if forallb is_known (fst e) && forallb is_known (snd e) then Wrong else Open.
 
-(* Reasons why numbers of a claim aren't known, with polynomials as lists of terms. Products of many terms are left out: a divisor,
+(* Reasons why numbers of a claim aren't known, with polynomials as lists of terms. Sums and products of many terms are left out: a divisor,
    or the argument of a function, has few. *)
 Fixpoint terms (p : poly) (j : positive) (m : list (positive * positive)) : list (Z * list (positive * positive)) :=
   match p with
@@ -538,11 +538,14 @@ Definition code (f : function) : nat * nat :=
   | Sqrt => (1, 0) | Sin => (2, 0) | Cos => (3, 0) | Exp => (4, 0) | Ln => (5, 0) | Stumpff k => (6, k) | LogRatio k => (7, k)
   end.
 Fixpoint size_of (p : poly) : N := match p with Pc _ => 1 | Pinj _ q => size_of q | PX q _ r => size_of q + size_of r end.
-Definition is_short (most : N) (f g : frac) : bool :=
-  match f, g with Known p _, Known q _ => N.leb (size_of p * size_of q) most | _, _ => true end.
+Definition is_short (most : N) (of : N -> N -> N) (f g : frac) : bool :=
+  match f, g with Known p _, Known q _ => N.leb (of (size_of p) (size_of q)) most | _, _ => true end.
 Definition short (most : N) (l : below) : ops := let o := fractions l in {|
-  T := frac; whole := whole o; add := add o; sub := sub o; div := div o; opp := opp o; call := call o; simple := simple o; idle := idle o;
-  mul f g := if is_short most f g then mul o f g else Unknown Idle
+  T := frac; whole := whole o; div := div o;
+  add f g := if is_short most N.add f g then add o f g else Unknown Idle;
+  sub f g := if is_short most N.add f g then sub o f g else Unknown Idle;
+  opp := opp o; call := call o; simple := simple o; idle := idle o;
+  mul f g := if is_short most N.mul f g then mul o f g else Unknown Idle
 |}.
 Definition same_reason (a b : reason) : bool :=
   match a, b with

@@ -6,6 +6,7 @@ reading of a declared text is the checker's. Divisors and rules for functions ar
 
 from __future__ import annotations
 
+import copy
 import json
 import math
 import random
@@ -139,6 +140,13 @@ class Problem:
             parameters += own
         rest = [free, n, 2 * n, n, n, free, n if in_group else 0, 0]
         return [h, parameters, half, target, momentum, *(self.new(count) for count in rest)]
+
+    def changed(self, data: dict[str, Any]) -> Problem:
+        """The same problem with the programs of another certificate."""
+        found = copy.copy(self)
+        found.data = data
+        found.programs = {name: found.program(name) for name in self.programs}
+        return found
 
     # The declared texts
 
@@ -348,16 +356,15 @@ def theorem(name: str) -> str:
     )
 
 
-def proof(problem: Problem) -> str:
-    """The file of a certificate, with a proof of each claim that is stated."""
-    stated = problem.stated
-    every = ", ".join(f"@{name}_holds" for name in stated)
-    return problem.written() + "".join(map(theorem, stated)) + f"\nDefinition all := ({every}).\nPrint Assumptions all.\n"
+def proof(problem: Problem, names: list[str]) -> str:
+    """The file of a certificate, with proofs of these claims."""
+    every = ", ".join(f"@{name}_holds" for name in names)
+    return problem.written() + "".join(map(theorem, names)) + f"\nDefinition all := ({every}).\nPrint Assumptions all.\n"
 
 
-def verdicts(problem: Problem) -> str:
-    """The file of a certificate, with what is found of each claim."""
-    return problem.written() + "".join(f"Eval vm_compute in ({name}, found data {name}).\n" for name in problem.stated)
+def verdict(problem: Problem, name: str) -> str:
+    """The file of a certificate, with what is found of a claim."""
+    return problem.written() + f"Eval vm_compute in found data {name}.\n"
 
 
 def questions(problem: Problem, most: int) -> str:

@@ -22,6 +22,8 @@ use crate::called::{folder, printed};
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../late/PROVED.md");
 const CHECKER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../python/python/liestep");
+/// The counts of claims that Coq proves, which `core/python/coq/check.py --table` writes and holds to account.
+const BY_COQ: &str = include_str!("../../../python/coq/proved.txt");
 const SCENES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/scenes");
 
 /// The texts of declared types, by their names.
@@ -66,9 +68,16 @@ fn table(folder: &Path, certificates: &[(String, String)]) -> String {
     for (file, (_, text)) in files.iter().zip(certificates) {
         fs::write(folder.join(file), text).unwrap();
     }
-    let head =
-        "| | group | unknowns | operations | functions | claims that hold | others |\n|---|---|---|---|---|---|---|\n";
-    head.to_owned() + &checked(&["--table"], &files, folder)
+    let said = checked(&["--table"], &files, folder);
+    let rows = said.lines().zip(certificates).map(|(row, (name, _))| format!("{row} {} |\n", by_coq(name)));
+    let head = "| | group | unknowns | operations | functions | claims that hold | others | by Coq |\n".to_owned();
+    head + "|---|---|---|---|---|---|---|---|\n" + &rows.collect::<String>()
+}
+
+/// The count of a certificate's claims that Coq proves, or nothing.
+fn by_coq(name: &str) -> &'static str {
+    let mut counts = BY_COQ.lines().filter_map(|line| line.split_once(": "));
+    counts.find(|(of, _)| *of == name).map_or("", |(_, count)| count)
 }
 
 /// The certificates of all declarations of the repository are those of the page; `UPDATE_EXPECT=1` writes the page anew.
