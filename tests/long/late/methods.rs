@@ -285,7 +285,7 @@ fn an_accuracy_has_the_choice_of_the_compiled_scene() {
     let both = sum(&[RigidBody::<f64>::DECLARATION, Gravity::<f64>::DECLARATION]);
     let values = both.described(&[numbers(&body()), numbers(&weight())].concat()).expect("numbers");
     let question = Question { accuracy, attitude: &IDENTITY, velocity: &[0.3, 4.0, 2.0] };
-    let (data, choice) = for_accuracy::<Interpreter>(both, &values, question).expect("a choice");
+    let (data, choice) = for_accuracy::<Interpreter>(both, &values, None, question).expect("a choice");
     let typed =
         liestep::Stepper::for_accuracy(body() + weight(), accuracy, SO3::identity(), Vector3::new(0.3, 4.0, 2.0))
             .expect("a choice");

@@ -1,5 +1,6 @@
 //! Scenes on any group: orders, momenta and defects, and starts.
 
+use std::fmt::Write as _;
 use std::fs;
 
 use liestep::groups::{Heisenberg, LieGroup, SE2, SE3, SL2, SO2, SO3, SU2};
@@ -139,6 +140,9 @@ fn geodesics_on_products() {
     }
 }
 
+/// The letter, generators and name of each factor of a product.
+type Factors = Vec<(&'static str, Generators, &'static str)>;
+
 /// Products with groups of the file's own, free and with kinetic energies that the Cayley map couples: orders, momentum in
 /// space, distance from the group.
 #[test]
@@ -146,7 +150,7 @@ fn products_with_groups_of_the_files_own() {
     let matrices = |all: &Generators| format!("[{}]", all.iter().map(written).collect::<Vec<_>>().join(", "));
     let metrics = |all: &[Generators]| all.iter().map(|one| metric(one[0].nrows())).collect::<Vec<_>>();
     // A drop beside a body in space, in this order and the other; a map of the plane beside a translation of space, and a drop.
-    let free: [(&str, Vec<(&str, Generators, &str)>); 3] = [
+    let free: [(&str, Factors); 3] = [
         ("drop, body", vec![("A", special_linear(), "SL3"), ("B", poses(4), "SE3")]),
         ("body, drop", vec![("A", poses(4), "SE3"), ("B", special_linear(), "SL3")]),
         ("map, drop, turn", vec![("A", affine(2), "Map"), ("B", special_linear(), "SL3"), ("C", turns(), "SO3")]),
@@ -170,9 +174,9 @@ fn products_with_groups_of_the_files_own() {
         let mut starts = String::from("[start]\n");
         let mut before = 0;
         for ((F, own, group), J) in factors.iter().zip(&J) {
-            text += &format!("J_of_{F} = {}\n", written(J));
+            let _ = writeln!(text, "J_of_{F} = {}", written(J));
             let euler = if *group == "SO3" { "euler = [0, 0, 0], " } else { "" };
-            starts += &format!("{F} = {{ {euler}velocity = {:?} }}\n", &xi[before..before + own.len()]);
+            let _ = writeln!(starts, "{F} = {{ {euler}velocity = {:?} }}", &xi[before..before + own.len()]);
             before += own.len();
         }
         text += &starts;

@@ -113,8 +113,9 @@ fn joints_from_either_end() {
     let expected = [Vector3::new(0.5, 0.0, -0.2), Vector3::new(0.5 + 0.4 * sine, 0.0, -0.1 + 0.4 * cosine)];
     for body in 0..2 {
         assert!((start[body].position - expected[body]).amax() < 1e-15, "{}", start[body].position);
+        // The pole falls over: e^(4.2 · 2) times the rounding errors of four hundred steps.
         let off = (end(&one, body) - end(&other, body)).amax();
-        assert!(off < 1e-12, "{body}: {off:e}");
+        assert!(off < 5e-12, "{body}: {off:e}");
     }
     assert!((start[1].velocity - Vector3::y() * 0.5).amax() < 1e-15);
     assert!((end(&one, 0) - expected[0]).norm() > 0.05);

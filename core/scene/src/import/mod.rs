@@ -1,13 +1,14 @@
 //! Models of other programs, written as scenes.
 //!
-//! A reader makes a [`Robot`](robot::Robot) of a file: links, and joints between them. Links that are fixed to each other become
+//! A reader makes a [`Robot`](model::Robot) of a file: links, and joints between them. Links that are fixed to each other become
 //! one body, and the scene has its bodies placed by joints. Elements without a counterpart are listed, none is left out in
 //! silence.
 //!
-//! The files depend on each other in one direction: `{mjcf, sdf, urdf} → xml → robot → rigid`, and `parts` has the files that a
+//! The files depend on each other in one direction: `{mjcf, sdf, urdf} → xml → robot → model → rigid`, and `parts` has the files that a
 //! model includes.
 
 mod mjcf;
+mod model;
 mod parts;
 mod rigid;
 mod robot;

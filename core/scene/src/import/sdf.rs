@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, HashMap, VecDeque};
 use nalgebra::{Isometry3, Matrix3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
+use super::model::{Connection, Joint, Link, Robot};
 use super::rigid::Distribution;
-use super::robot::{Connection, Joint, Link, Robot};
 use super::xml::{Read, child, direction, elements, finite, frame, name, numbers, place};
 
 /// The name of the root link, which is space.

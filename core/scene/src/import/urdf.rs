@@ -3,8 +3,8 @@
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use roxmltree::Node;
 
+use super::model::{Connection, Joint, Link, Robot};
 use super::rigid::Distribution;
-use super::robot::{Connection, Joint, Link, Robot};
 use super::xml::{Read, child, direction, elements, frame, name, number, place, triple};
 use crate::file::shape::{Round, Shape};
 

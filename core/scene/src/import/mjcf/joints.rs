@@ -12,8 +12,8 @@
 use nalgebra::{Isometry3, Matrix3, Vector3};
 use roxmltree::Node;
 
+use super::super::model::{Connection, Joint, Link};
 use super::super::rigid::Distribution;
-use super::super::robot::{Connection, Joint, Link};
 use super::super::xml::{Read, direction, numbers, place, triple};
 use super::{Around, Reader};
 

@@ -16,8 +16,9 @@ use roxmltree::Node;
 use self::classes::Classes;
 use self::compiler::Compiler;
 use self::geom::{Weight, weight};
+use super::model::{Connection, Joint, Link, Robot};
 use super::rigid::Distribution;
-use super::robot::{Connection, Joint, Link, NO_MESH, Robot};
+use super::robot::NO_MESH;
 use super::xml::{Read, elements, finite, number, numbers, place, triple};
 
 /// The name of the root link, which is space.
