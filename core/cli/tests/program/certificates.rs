@@ -12,8 +12,7 @@ use declarations::{
 };
 use liestep::effects::RigidBody;
 use liestep::effects::joints::{
-    Armature, DryFriction, JointDamping, JointSpring, JointTorque, SliderArmature, SliderDamping, SliderFriction,
-    SliderSpring,
+    DryFriction, JointDamping, JointSpring, JointTorque, SliderDamping, SliderFriction, SliderSpring,
 };
 use liestep::mechanics::Effect;
 use liestep_late::{Declaration, certificate};
@@ -89,17 +88,8 @@ fn the_page_of_what_is_proved() {
     let folder = folder("certificates");
     let of = |(name, text): (String, &str)| (name, certificate(with_a_body(text)).unwrap());
     let library = liestep_scene::derived().map(|name| (name.clone(), liestep_scene::declaration(&name).unwrap()));
-    let joints = texts![
-        JointSpring,
-        JointTorque,
-        JointDamping,
-        DryFriction,
-        Armature,
-        SliderSpring,
-        SliderDamping,
-        SliderFriction,
-        SliderArmature,
-    ];
+    let joints =
+        texts![JointSpring, JointTorque, JointDamping, DryFriction, SliderSpring, SliderDamping, SliderFriction,];
     let declared = texts![
         Alike,
         CayleyTop,
