@@ -24,7 +24,6 @@ Record ops := {
   div : T -> T -> T;
   opp : T -> T;
   call : function -> T -> T;
-  simple : T -> T; (* the number, with less above and below *)
   idle : (unit -> T) -> T (* the value, which a check doesn't need *)
 }.
 
@@ -51,7 +50,6 @@ Definition dual (o : ops) : ops := {|
   div a b := let q := div o (fst a) (fst b) in (q, div o (sub o (snd a) (mul o q (snd b))) (fst b));
   opp a := (opp o (fst a), opp o (snd a));
   call f a := (call o f (fst a), mul o (slope o f (fst a)) (snd a));
-  simple a := (simple o (fst a), simple o (snd a));
   idle f := (idle o (fun _ => fst (f tt)), idle o (fun _ => snd (f tt)))
 |}.
 
@@ -63,17 +61,16 @@ Record related (p q : ops) (R : T p -> T q -> Prop) : Prop := {
   of_div : forall a b x y, R a x -> R b y -> R (div p a b) (div q x y);
   of_opp : forall a x, R a x -> R (opp p a) (opp q x);
   of_call : forall f a x, R a x -> R (call p f a) (call q f x);
-  of_simple : forall a x, R a x -> R (simple p a) (simple q x);
   of_idle : forall f g, R (f tt) (g tt) -> R (idle p f) (idle q g)
 }.
 
 Definition pair {A B} (R : A -> B -> Prop) (a : A * A) (b : B * B) : Prop := R (fst a) (fst b) /\ R (snd a) (snd b).
 
 Lemma slope_related p q R f a x : related p q R -> R a x -> R (slope p f a) (slope q f x).
-Proof. intros [w s t m d n c e i] h; destruct f; cbn [slope]; auto 8. Qed.
+Proof. intros [w s t m d n c i] h; destruct f; cbn [slope]; auto 8. Qed.
 Lemma dual_related p q R : related p q R -> related (dual p) (dual q) (pair R).
 Proof.
-  intro r; pose proof (fun f a x => slope_related p q R f a x r) as slopes; destruct r as [w a s m d n c e i].
+  intro r; pose proof (fun f a x => slope_related p q R f a x r) as slopes; destruct r as [w a s m d n c i].
   split; unfold pair; cbn; intros; repeat match goal with H : _ /\ _ |- _ => destruct H end; split; auto 8.
 Qed.
 
@@ -107,9 +104,6 @@ Definition x_to (i j : positive) : Mon := zmon_pred j (vmon i mon0).
 Definition square_of (j : positive) (p : poly) : square := ((1%Z, x_to 2 j), p).
 Definition psubst : poly -> list square -> nat -> poly := PSubstL1 0%Z 1%Z Z.add Z.mul Zeq_bool Z.quotrem.
 Definition parts_by (m : Mon) (q : poly) : poly * poly := MFactor 0%Z 1%Z Zeq_bool Z.quotrem q 1%Z m.
-(* A product of powers of variables, from the variable b on. *)
-Fixpoint power_product (b : positive) (l : list (positive * positive)) : Mon :=
-  match l with [] => mon0 | (j, e) :: r => zmon_pred (Pos.succ j - b) (vmon e (power_product (Pos.succ j) r)) end.
 
 (* The greatest common divisor of the coefficients. *)
 Fixpoint content (p : poly) : Z :=
@@ -136,7 +130,6 @@ Record below := {
   polynomials : list poly;
   point : list Z;
   primes : list Z;
-  leads : list (list (positive * positive)); (* of each a product of powers, with the coefficient one; or none *)
   roots : list (positive * poly);
   known : list (function * frac * frac)
 }.
@@ -150,30 +143,6 @@ Definition lifted (p : poly) (d : powers) : poly :=
 Definition made (p : poly) (d : powers) : frac :=
   if peq p (pc 0) then Known (pc 0) [] else Known p d.
 
-(* A rest and a quotient by a divisor a + m; and a polynomial without a divisor, with the power that remains of it. *)
-Fixpoint divided (n : nat) (m : Mon) (a p q : poly) : poly * poly :=
-  match n with
-  | 0 => (p, q)
-  | S n => let '(c, b) := parts_by m p in if peq b (pc 0) then (p, q) else divided n m a (psub c (pmul b a)) (padd q b)
-  end.
-Fixpoint without (divisor a : poly) (m : Mon) (prime : Z) (k : nat) (p : poly) : poly * nat :=
-  match k with
-  | 0 => (p, 0)
-  | S j =>
-      if (modulo_point (point l) prime p =? 0)%Z then
-        let '(r, q) := divided 60 m a p (pc 0) in if peq r (pc 0) then without divisor a m prime j q else (p, k)
-      else (p, k)
-  end.
-Fixpoint cancelled (divisors : list poly) (primes : list Z) (leads : list (list (positive * positive))) (p : poly) (d : powers) : poly * powers :=
-  match divisors, primes, leads, d with
-  | divisor :: divisors, prime :: primes, lead :: leads, k :: d =>
-      let m := power_product 1 lead in let '(a, b) := parts_by m divisor in
-      let '(q, j) := match k, lead with 0, _ | _, [] => (p, k) | _, _ => if peq b (pc 1) then without divisor a m prime k p else (p, k) end in
-      let '(r, e) := cancelled divisors primes leads q d in (r, j :: e)
-  | _, _, _, _ => (p, d)
-  end.
-Definition simplified (f : frac) : frac :=
-  match f with Known p d => let '(p, d) := cancelled (polynomials l) (primes l) (leads l) p d in Known p d | u => u end.
 Definition linear (op : poly -> poly -> poly) (f g : frac) : frac :=
   match f, g with
   | Known p d, Known q e => made (op (lifted p (lack d e)) (lifted q (lack e d))) (plus_ d (lack d e))
@@ -216,7 +185,7 @@ Fixpoint looked_up (f : function) (x : frac) (l : list (function * frac * frac))
 Definition fractions : ops := {|
   T := frac; whole z := Known (pc z) []; add := linear padd; sub := linear psub; mul := fmul; div := fdiv; opp := fopp;
   call f x := looked_up f x (known l);
-  simple := simplified; idle _ := Unknown Idle
+  idle _ := Unknown Idle
 |}.
 Definition var (j : positive) : frac := Known (px j) [].
 End Fractions.
@@ -229,7 +198,7 @@ Add Field field_of_K : theory.
 Definition phi := gen_phiZ k0 k1 kadd kmul kopp.
 Variable apply : function -> K -> K.
 Definition numbers : ops := {|
-  T := K; whole := phi; add := kadd; sub := ksub; mul := kmul; div := kdiv; opp := kopp; call := apply; simple x := x;
+  T := K; whole := phi; add := kadd; sub := ksub; mul := kmul; div := kdiv; opp := kopp; call := apply;
   idle f := f tt
 |}.
 
@@ -316,52 +285,12 @@ Lemma ev_lifted p d : ev (lifted l p d) = kmul (ev p) (under d).
 Proof.
   unfold lifted; destruct (forallb _ d) eqn:z; [rewrite (zero_powers d z); ring | apply ev_mul].
 Qed.
-Lemma parts_ok m p : ev p = kadd (ev (fst (parts_by m p))) (kmul (Mphi k0 k1 kmul env m) (ev (snd (parts_by m p)))).
-Proof.
-  pose proof (Mphi_ok equivalence extension almost morphism (Ztriv_div_th equivalence phi) p (1%Z, m) env) as h.
-  unfold parts_by; cbn zeta beta iota in h; destruct (MFactor _ _ _ _ p 1%Z m) as [q r]; cbn [fst snd]; unfold ev at 1; rewrite h.
-  unfold ev, phi; cbn; ring.
-Qed.
-Lemma divided_ok m a d n : ev d = kadd (ev a) (Mphi k0 k1 kmul env m) -> forall p q,
-  let '(r, s) := divided n m a p q in kadd (ev p) (kmul (ev d) (ev q)) = kadd (ev r) (kmul (ev d) (ev s)).
-Proof.
-  intro h; induction n as [| n IH]; intros p q; cbn [divided]; [reflexivity |]; pose proof (parts_ok m p) as e.
-  destruct (parts_by m p) as [c b]; cbn [fst snd] in e; destruct (peq b (pc 0)); [reflexivity |].
-  specialize (IH (psub c (pmul b a)) (padd q b)); destruct (divided n m a _ _) as [r s]; rewrite <- IH, ev_sub, ev_mul, ev_add, e, h; ring.
-Qed.
-Lemma without_ok d a m z : ev d = kadd (ev a) (Mphi k0 k1 kmul env m) -> forall k p,
-  let '(q, j) := without l d a m z k p in kmul (ev q) (ev (ppow d k)) = kmul (ev (ppow d j)) (ev p).
-Proof.
-  intro h; induction k as [| k IH]; intro p; cbn [without]; [ring |]; destruct (_ =? _)%Z; [| ring].
-  pose proof (divided_ok m a d 60 h p (pc 0)) as e; destruct (divided _ _ _ _ _) as [r q]; destruct (peq r (pc 0)) eqn:z0; [| ring].
-  specialize (IH q); destruct (without l d a m z k q) as [s j]; cbn [ppow]; apply ev_eq in z0; rewrite z0, ev_0 in e.
-  assert (p_ : ev p = kmul (ev d) (ev q)) by (transitivity (kadd (ev p) (kmul (ev d) k0)); [ring | rewrite e; ring]).
-  rewrite ev_mul, p_; transitivity (kmul (ev d) (kmul (ev s) (ev (ppow d k)))); [ring | rewrite IH; ring].
-Qed.
-Lemma cancelled_ok ps : forall zs ms p d,
-  let '(q, e) := cancelled l ps zs ms p d in kmul (ev q) (ev (under_ ps d)) = kmul (ev (under_ ps e)) (ev p).
-Proof.
-  clear sound squared; induction ps as [| d ps IH]; intros [| z zs] [| m ms] p [| k e]; cbn [cancelled]; try ring.
-  pose proof (parts_ok (power_product 1 m) d) as h; destruct (parts_by (power_product 1 m) d) as [a b]; cbn [fst snd] in h.
-  match goal with |- context [let '(_, _) := ?x in _] => assert (w : let '(q, j) := x in kmul (ev q) (ev (ppow d k)) = kmul (ev (ppow d j)) (ev p)) end.
-  { destruct k, m; try ring; destruct (peq b (pc 1)) eqn:one; [| ring]; apply ev_eq in one; rewrite one, ev_1 in h.
-    apply without_ok; rewrite h; ring. }
-  destruct (match k with 0 => _ | S _ => _ end) as [q j]; specialize (IH zs ms q e); destruct (cancelled l ps zs ms q e) as [r f].
-  rewrite !step_; transitivity (kmul (ev (ppow d k)) (kmul (ev r) (ev (under_ ps e)))); [ring |]; rewrite IH.
-  transitivity (kmul (ev (under_ ps f)) (kmul (ev q) (ev (ppow d k)))); [ring |]; rewrite w; ring.
-Qed.
 Lemma means_made p d x : ev p = kmul x (under d) -> means (made p d) x.
 Proof.
   unfold made; destruct (peq p (pc 0)) eqn:z; [| exact (fun h => h)].
   intro h; apply ev_eq in z; change (ev p = k0) in z; change (k0 = kmul x (ev (under_ (polynomials l) []))).
   rewrite nothing; apply (cancel _ _ (under d)); [apply under_not |].
   transitivity k0; [ring |]; transitivity (ev p); [exact (eq_sym z) | rewrite h; ring].
-Qed.
-Lemma simple_ok f x : means f x -> means (simplified l f) x.
-Proof.
-  destruct f as [p d |]; cbn [simplified]; auto; intro h.
-  pose proof (cancelled_ok (polynomials l) (primes l) (leads l) p d) as c; destruct (cancelled _ _ _ _ p d) as [q e].
-  unfold means in *; apply (cancel _ _ (under d)); [apply under_not |]; unfold under in *; rewrite c, h; ring.
 Qed.
 Lemma linear_ok op (kop : K -> K -> K) f g x y :
   (forall p q, ev (op p q) = kop (ev p) (ev q)) -> (forall a b c, kmul (kop a b) c = kop (kmul a c) (kmul b c)) ->
@@ -420,7 +349,6 @@ Proof.
   - exact div_ok.
   - exact opp_ok.
   - exact call_ok.
-  - exact simple_ok.
   - intros; exact I.
 Qed.
 Lemma var_ok j : means (var j) (BinList.nth k0 j env).

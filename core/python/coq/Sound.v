@@ -482,14 +482,13 @@ Record problem := {
   divisors : list text;
   a_point : list Z;
   some_primes : list Z;
-  some_leads : list (list (positive * positive));
   rules : list rule
 }.
 
 Definition names (o : ops) (v : list (list (T o))) : list (list (list (T o))) := map (column o) v.
 Definition variables : list (list positive) -> list (list frac) := map (map var).
 Definition with_divisors (l : list poly) (c : problem) : below :=
-  {| polynomials := l; point := a_point c; primes := some_primes c; leads := some_leads c; roots := []; known := [] |}.
+  {| polynomials := l; point := a_point c; primes := some_primes c; roots := []; known := [] |}.
 Definition above (f : frac) : poly := match f with Known p [] => p | _ => pc 1 end.
 Definition of_text (c : problem) (l : below) (t : text) : frac :=
   number_of (fractions l) t (names (fractions l) (variables (places c))).
@@ -508,7 +507,7 @@ Definition root_of (c : problem) (l : below) (r : rule) : list (positive * poly)
   | _ => []
   end.
 Definition grown (c : problem) (l : below) (r : rule) : below := {|
-  polynomials := polynomials l; point := point l; primes := primes l; leads := leads l;
+  polynomials := polynomials l; point := point l; primes := primes l;
   roots := root_of c l r ++ roots l;
   known := calls (fractions l) r (names (fractions l) (variables (places c))) ++ known l
 |}.
@@ -544,7 +543,7 @@ Definition short (most : N) (l : below) : ops := let o := fractions l in {|
   T := frac; whole := whole o; div := div o;
   add f g := if is_short most N.add f g then add o f g else Unknown Idle;
   sub f g := if is_short most N.add f g then sub o f g else Unknown Idle;
-  opp := opp o; call := call o; simple := simple o; idle := idle o;
+  opp := opp o; call := call o; idle := idle o;
   mul f g := if is_short most N.mul f g then mul o f g else Unknown Idle
 |}.
 Definition same_reason (a b : reason) : bool :=

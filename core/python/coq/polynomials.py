@@ -59,15 +59,6 @@ def divided(one: Polynomial, other: Polynomial) -> Polynomial | None:
     return found
 
 
-def lead(one: Polynomial) -> str:
-    """A product of powers that comes first in an order of all, if its coefficient is one; as variables with their powers, in Coq."""
-    for sign in (1, -1):
-        first = max(one, key=lambda m: (len(m), [sign * j for j in m]))
-        if one[first] == 1 and first:
-            return "[" + "; ".join(f"({j}, {k})" for j, k in sorted(Counter(first).items())) + "]"
-    return "[]"
-
-
 def factored(value: int) -> list[int]:
     """The prime factors of a number, as far as they are small."""
     found, value, p = [], abs(value), 2

@@ -18,7 +18,7 @@ from typing import Any
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "python" / "liestep"))
 
-from polynomials import Polynomial, content, divided, factored, lead, product, stripped  # noqa: E402
+from polynomials import Polynomial, content, divided, factored, product, stripped  # noqa: E402
 from symbols import FUNCTIONS, Matrix, Number, called, field, motion, node, number, total, written  # noqa: E402
 from verify.text import long_decimals  # noqa: E402
 
@@ -321,7 +321,6 @@ class Problem:
             + f"\nDefinition declared : certificate := {{|\n{certificate} |}}.\n\n"
             + f"Definition data : problem := {{|\n  step := declared;\n  places := {places};\n  divisors := {divisors};\n"
             + f"  a_point := {listed(map(str, self.point))}%Z;\n  some_primes := {listed(map(str, self.primes))}%Z;\n"
-            + f"  some_leads := {listed(lead(one) for one in self.divisors)}%positive;\n"
             + f"  rules := {listed(self.rules)} |}}.\n"
         )
 

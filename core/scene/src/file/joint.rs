@@ -66,9 +66,9 @@ const NUMBERS: usize = Number::Speed as usize + 1;
 enum Sign {
     /// All, with the opposite sign where the file names the bodies in the other order.
     Either,
-    /// Those above zero, and over time zero, where the term is off.
+    /// Numbers above zero, and zero over time, where the term is off.
     OrOff,
-    /// Those above zero.
+    /// Numbers above zero.
     Above,
 }
 
@@ -79,9 +79,18 @@ const fn unit<Q: Quantity>() -> Measure {
     (read::<Q>, si::<Q>())
 }
 
-/// A key of a joint for a number: its name, the number, where a table has it, the kinds that have it beside sliders, the numbers that it
-/// may have, and its unit in such joints and in sliders.
-pub(crate) struct Key(&'static str, Number, Value, fn(Kind) -> bool, Sign, [Option<Measure>; 2]);
+/// A key of a joint for a number.
+pub(crate) struct Key {
+    name: &'static str,
+    number: Number,
+    /// The value in a table.
+    value: Value,
+    /// The kinds that have the number, beside sliders.
+    has: fn(Kind) -> bool,
+    sign: Sign,
+    /// The units in a joint of such a kind, and in a slider.
+    units: [Option<Measure>; 2],
+}
 
 type Value = fn(&JointTable) -> Option<&Given>;
 
@@ -99,9 +108,19 @@ const KEYS: [Key; 13] = {
     const fn slide<Q: Quantity>() -> [Option<Measure>; 2] {
         [None, Some(unit::<Q>())]
     }
+    const fn key(
+        name: &'static str,
+        number: Number,
+        value: Value,
+        has: fn(Kind) -> bool,
+        sign: Sign,
+        units: [Option<Measure>; 2],
+    ) -> Key {
+        Key { name, number, value, has, sign, units }
+    }
     [
-        Key("damping", N::Damping, |of| of.damping.as_ref(), K::turns, OrOff, both::<Damping, LinearDamping>()),
-        Key(
+        key("damping", N::Damping, |of| of.damping.as_ref(), K::turns, OrOff, both::<Damping, LinearDamping>()),
+        key(
             "stiffness",
             N::Stiffness,
             |of| of.stiffness.as_ref(),
@@ -109,29 +128,29 @@ const KEYS: [Key; 13] = {
             OrOff,
             both::<TurningStiffness, Stiffness>(),
         ),
-        Key("rest", N::Rest, |of| of.rest.as_ref(), K::rests, Either, both::<Angle, Length>()),
-        Key("torque", N::Effort, |of| of.torque.as_ref(), K::turns_about_axis, Either, turn::<Torque>()),
-        Key("force", N::Effort, |of| of.force.as_ref(), K::turns_about_axis, Either, slide::<Force>()),
-        Key("friction.torque", N::Friction, |of| of.dry()?.torque.as_ref(), K::turns, OrOff, turn::<Torque>()),
-        Key("friction.force", N::Friction, |of| of.dry()?.force.as_ref(), K::turns, OrOff, slide::<Force>()),
-        Key("friction.below", N::Below, |of| of.dry()?.below.as_ref(), K::turns, Above, both::<Rate, Speed>()),
-        Key("armature", N::Armature, |of| of.armature.as_ref(), K::turns, Above, both::<Inertia, Mass>()),
-        Key("angle", N::Angle, |of| of.angle.as_ref(), K::turns_about_axis, Either, turn::<Angle>()),
-        Key("rate", N::Rate, |of| of.rate.as_ref(), K::turns_about_axis, Either, turn::<Rate>()),
-        Key("shift", N::Shift, |of| of.shift.as_ref(), K::shifts_along_axis, Either, both::<Length, Length>()),
-        Key("speed", N::Speed, |of| of.speed.as_ref(), K::shifts_along_axis, Either, both::<Speed, Speed>()),
+        key("rest", N::Rest, |of| of.rest.as_ref(), K::rests, Either, both::<Angle, Length>()),
+        key("torque", N::Effort, |of| of.torque.as_ref(), K::turns_about_axis, Either, turn::<Torque>()),
+        key("force", N::Effort, |of| of.force.as_ref(), K::turns_about_axis, Either, slide::<Force>()),
+        key("friction.torque", N::Friction, |of| of.dry()?.torque.as_ref(), K::turns, OrOff, turn::<Torque>()),
+        key("friction.force", N::Friction, |of| of.dry()?.force.as_ref(), K::turns, OrOff, slide::<Force>()),
+        key("friction.below", N::Below, |of| of.dry()?.below.as_ref(), K::turns, Above, both::<Rate, Speed>()),
+        key("armature", N::Armature, |of| of.armature.as_ref(), K::turns, Above, both::<Inertia, Mass>()),
+        key("angle", N::Angle, |of| of.angle.as_ref(), K::turns_about_axis, Either, turn::<Angle>()),
+        key("rate", N::Rate, |of| of.rate.as_ref(), K::turns_about_axis, Either, turn::<Rate>()),
+        key("shift", N::Shift, |of| of.shift.as_ref(), K::shifts_along_axis, Either, both::<Length, Length>()),
+        key("speed", N::Speed, |of| of.speed.as_ref(), K::shifts_along_axis, Either, both::<Speed, Speed>()),
     ]
 };
 
 impl Key {
     /// The unit in a joint of a kind; none where that hasn't the number.
     fn unit(&self, kind: Kind) -> Option<Measure> {
-        let Self(.., has, _, [turning, sliding]) = self;
-        if kind == Kind::Slider { *sliding } else { turning.filter(|_| has(kind)) }
+        let [turning, sliding] = self.units;
+        if kind == Kind::Slider { sliding } else { turning.filter(|_| (self.has)(kind)) }
     }
 
     const fn may_change(&self) -> bool {
-        (self.1 as usize) < Number::Armature as usize
+        (self.number as usize) < Number::Armature as usize
     }
 }
 
@@ -139,8 +158,8 @@ impl Key {
 #[must_use]
 pub fn changing_numbers() -> String {
     let words = KEYS.iter().filter(|key| key.may_change()).map(|key| {
-        let units: Vec<_> = key.5.iter().flatten().map(|(_, unit)| *unit).collect();
-        format!("{} in {}", key.0, units.join(" or "))
+        let units: Vec<_> = key.units.iter().flatten().map(|(_, unit)| *unit).collect();
+        format!("{} in {}", key.name, units.join(" or "))
     });
     words.collect::<Vec<_>>().join(", ")
 }
@@ -284,16 +303,16 @@ impl JointTable {
                 return refuse(place, FRICTION[usize::from(is_slider)].to_owned());
             }
         }
-        for (key, value) in KEYS.iter().filter_map(|key| Some((key, key.2(self)?))) {
+        for (key, value) in KEYS.iter().filter_map(|key| Some((key, (key.value)(self)?))) {
             if key.unit(kind).is_none() {
-                let instead = match key.0 {
+                let instead = match key.name {
                     "torque" if is_slider => "; its motor has a `force`",
                     "force" if kind.turns() => "; a motor that turns has a `torque`",
                     "angle" | "rate" if is_slider => "; it starts at a `shift` with a `speed`",
                     "shift" | "speed" if kind.turns_about_axis() => "; it starts at an `angle` with a `rate`",
                     _ => "",
                 };
-                return refuse(value.span(), format!("a {name} has no `{}`{instead}", key.0));
+                return refuse(value.span(), format!("a {name} has no `{}`{instead}", key.name));
             }
         }
         if let (Some(limits), false) = (&self.limits, matches!(kind, Kind::Pin | Kind::Slider)) {
@@ -334,8 +353,8 @@ impl JointTable {
 
     /// The place of the first of its coordinates at the start, if any is given.
     pub(crate) fn coordinate(&self) -> Option<Range<usize>> {
-        let of_start = KEYS.iter().filter(|key| key.1 as usize >= Number::Angle as usize);
-        of_start.filter_map(|key| key.2(self)).map(Spanned::span).next()
+        let of_start = KEYS.iter().filter(|key| key.number as usize >= Number::Angle as usize);
+        of_start.filter_map(|key| (key.value)(self)).map(Spanned::span).next()
     }
 
     /// The joint; if the second of its bodies is space, with both exchanged.
@@ -346,12 +365,12 @@ impl JointTable {
         let zero = self.attitude(&axes)?;
         let mut numbers = [None; NUMBERS];
         for key in &KEYS {
-            let (Some(value), Some((read, _))) = (key.2(&self), key.unit(kind)) else { continue };
+            let (Some(value), Some((read, _))) = ((key.value)(&self), key.unit(kind)) else { continue };
             let number = read(value)?;
-            if key.4 != Sign::Either && number <= 0.0 {
+            if key.sign != Sign::Either && number <= 0.0 {
                 return Err((value.span(), "must be above zero".to_owned()));
             }
-            numbers[key.1 as usize] = Some(number);
+            numbers[key.number as usize] = Some(number);
         }
         let limits = self.limits.map(|limits| {
             let (span, limits) = (limits.span(), limits.into_inner());
@@ -377,7 +396,7 @@ impl Joint {
         axes.swap(0, 1);
         let mut numbers = self.numbers;
         for (at, number) in numbers.iter_mut().enumerate() {
-            let is_signed = KEYS.iter().any(|key| key.1 as usize == at && key.4 == Sign::Either);
+            let is_signed = KEYS.iter().any(|key| key.number as usize == at && key.sign == Sign::Either);
             *number = number.map(|number| if is_signed { -number } else { number });
         }
         let limits = limits.map(|limits| Limits { ends: [-limits.ends[1], -limits.ends[0]], ..limits });
@@ -401,8 +420,8 @@ impl Joint {
 
     /// Sets a value over time, with the sign that the file has; returns whether it can have this number.
     pub(crate) fn put(&mut self, name: &str, number: f64) -> bool {
-        let of_name = |key: &&Key| key.0 == name && key.may_change() && key.unit(self.kind).is_some();
-        let Some(Key(_, of, .., sign, _)) = KEYS.iter().find(of_name) else { return false };
+        let of_name = |key: &&Key| key.name == name && key.may_change() && key.unit(self.kind).is_some();
+        let Some(Key { number: of, sign, .. }) = KEYS.iter().find(of_name) else { return false };
         let (can_be, number) = match sign {
             Sign::Either => (true, self.sign * number),
             Sign::OrOff => (number >= 0.0, number),

@@ -294,7 +294,7 @@ impl Robot {
         text.push('\n');
     }
 
-    /// What acts in a joint of this kind, and its limits.
+    /// The terms in a joint of this kind, and its limits.
     fn terms(&mut self, text: &mut String, (joint, kind): (usize, &str)) {
         let Joint { name, damping, friction, armature, limits, stiffness, rest, .. } = &self.joints[joint];
         let most = if kind == "slider" { "force" } else { "torque" };

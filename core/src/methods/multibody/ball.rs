@@ -1,6 +1,6 @@
 //! Elimination of a body on a ball joint, by its turn and the shift of the joint's point: blocks of three are left.
 //!
-//! With `T` the map from the body's turn to the shift of the joint's point after the step, and `S` that before it, the equations
+//! Let `T` map the body's turn to the shift of the joint's point after the step, and `S` to that before it. The equations
 //! of the turn `z` and of the point's shift `ξ`, where `x = ξ − T z`, are those of the body by
 //!
 //! ```text
