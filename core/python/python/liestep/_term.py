@@ -298,7 +298,7 @@ def lagrangian(
     ...         " + ((I - inverse(F)) * K * (I - inverse(F)).transpose()).trace()) / (4 * h)"
     ...         " + ((Q - I) * J_d * (Q - I).transpose()).trace() / (2 * h)")
     >>> both.stepper(0.01).run(velocity=np.full(11, 0.1), until=1).attitude.shape
-    (101, 18)
+    (101, 13)
     """
     if (l_d is None) == (l is None) or (l is None) != (discretise is None):
         raise DeclarationError("a Lagrangian has `l_d`, or `l` with `discretise`, as in `discretise=\"trapezoid(Cayley)\"`")
