@@ -55,8 +55,10 @@ pub fn certificate(declaration: &Declaration) -> Result<String, LateError> {
         let (kind, (rows, columns)) = (kind(parameter.kind), parameter.kind.shape());
         json!({"name": parameter.name, "kind": kind, "rows": rows, "columns": columns})
     });
-    let programs =
-        emitted(&step, &[]).programs.into_iter().filter_map(|(name, program)| Some((name, as_data(&program?))));
+    let programs = emitted(&step, &[("newton", &step.programs.newton)])
+        .programs
+        .into_iter()
+        .filter_map(|(name, program)| Some((name, as_data(&program?))));
     let has = |name: &str| match name {
         "work" => declaration.has_force,
         "safe" => step.programs.safe.is_some(),

@@ -13,8 +13,8 @@ pub(crate) struct Emitted {
     pub(crate) constants: Vec<usize>,
 }
 
-/// The programs of a step, `newton` the system for a solve with care, and more of its programs. Constants that none of them
-/// reads, as those of derivatives, are left out, and those that only the additional programs read come last.
+/// The programs of a step, and more of its programs. Constants that none of them reads, as those of derivatives, are left
+/// out, and those that only the additional programs read come last.
 pub(crate) fn emitted(step: &WholeStep, more: &[(&'static str, &Program)]) -> Emitted {
     let all = &step.programs;
     let others = [
@@ -27,7 +27,6 @@ pub(crate) fn emitted(step: &WholeStep, more: &[(&'static str, &Program)]) -> Em
         ("restored", Some(&all.restored)),
         ("defect", Some(&all.defect)),
         ("rest", Some(&all.rest)),
-        ("newton", Some(&all.newton)),
     ];
     let more: Vec<_> = more.iter().map(|&(name, program)| (name, Some(program))).collect();
     let mut places = BTreeMap::new();

@@ -22,8 +22,6 @@ impl<'a> Parts<'a> {
         let Programs { velocity, momentum, energy, .. } = &step.programs;
         let limit = [("velocity_of", velocity), ("momentum_of", momentum), ("energy_of", energy)];
         let mut emitted = emitted(&step, if has_limit(&step) { &limit } else { &[] });
-        // A text refuses steps that take special care.
-        emitted.programs.retain(|(name, _)| *name != "newton");
         for (name, _) in &mut emitted.programs {
             // A driver has a variable of this name.
             if *name == "defect" {

@@ -224,6 +224,22 @@ fn what_has_no_step_in_c_is_told() {
     }
 }
 
+/// A text has no constant that none of its programs reads.
+#[test]
+fn each_constant_of_a_text_is_read() {
+    let [top, log, flyer] = [FullTop::DECLARATION, LogTop::DECLARATION, Flyer::DECLARATION];
+    for declaration in
+        [top, log, flyer, CayleyTop::DECLARATION, DoublePendulum::<f64>::DECLARATION, TurnedTop::DECLARATION]
+    {
+        let text = c(parsed(declaration)).expect("a step in C");
+        let (_, after) = text.split_once("_CONSTANTS = ").expect("a size");
+        let count = after.split(|letter: char| !letter.is_ascii_digit()).next().expect("a number");
+        let unread = |at: &usize| !text.contains(&format!("in->constants[{at}]"));
+        let unread: Vec<usize> = (0..count.parse().expect("a number")).filter(unread).collect();
+        assert!(unread.is_empty(), "{declaration}: {unread:?} of {count}");
+    }
+}
+
 /// The logarithm and the exponential are functions of their own in C, by their series and beyond.
 #[test]
 fn so_have_logarithms_and_exponentials() {
