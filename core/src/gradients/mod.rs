@@ -118,7 +118,7 @@ use core::ops::Range;
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, SecondDerivatives};
-use crate::motion::{MotionOf, OwnStep, Plan, StateOf, Steerable, StepReport, Stepper, Summation};
+use crate::motion::{MotionOf, OwnStep, Plan, StateOf, Steerable, StepReport, Stepper, Summation, explained};
 use crate::numbers::{Kernel, Vectors, dispatch};
 use recording::Recording;
 
@@ -360,7 +360,7 @@ impl<S: SecondDerivatives, P: Linearisable<S>> Kernel for StepRecord<'_, S, P> {
                 state.motion = recorded.motion;
                 Ok(report)
             }
-            Err(error) if P::FACTS.explains => Err(plan.explained(error, scene, &state.motion, &state.kept)),
+            Err(error) if P::FACTS.explains => Err(explained(plan, error, (scene, &state.motion, &state.kept))),
             Err(error) => Err(error),
         }
     }

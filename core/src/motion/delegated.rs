@@ -65,22 +65,6 @@ macro_rules! delegate_plan {
             self.$plan.step_of(scene, motion, &mut $inner, length)
         }
     };
-    (@is_in_step $plan:tt, $kept:ident, $inner:expr) => {
-        fn is_in_step(&self, $kept: &Self::Kept) -> bool {
-            self.$plan.is_in_step(&$inner)
-        }
-    };
-    (@explained $plan:tt, $kept:ident, $inner:expr) => {
-        fn explained(
-            &self,
-            error: $crate::StepError,
-            scene: &S,
-            motion: &$crate::delegate_plan!(@motion),
-            $kept: &Self::Kept,
-        ) -> $crate::StepError {
-            self.$plan.explained(error, scene, motion, &$inner)
-        }
-    };
     (@max_step $plan:tt, $kept:ident, $inner:expr) => {
         fn max_step(
             &self,

@@ -22,6 +22,11 @@ pub trait Kept<T: Real>: Copy + Debug + PartialEq {
         });
     }
 
+    /// Whether the lanes of this memory can be made a step of the length `h` together. A memory of a single body always can.
+    fn is_in_step(&self, _h: T) -> bool {
+        true
+    }
+
     /// The memory for a next step that is longer by this ratio: increments are proportional to the step.
     #[must_use]
     fn scaled(&self, _ratio: T) -> Self {
@@ -47,6 +52,10 @@ impl<T: Real, A: Kept<T>, B: Kept<T>> Kept<T> for (A, B) {
         // Both are visited even if the first is invalid: the number of calls doesn't depend on the values.
         let (first, second) = (self.0.with_numbers(number), self.1.with_numbers(number));
         Some((first?, second?))
+    }
+
+    fn is_in_step(&self, h: T) -> bool {
+        self.0.is_in_step(h) && self.1.is_in_step(h)
     }
 
     fn scaled(&self, ratio: T) -> Self {

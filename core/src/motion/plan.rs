@@ -6,6 +6,7 @@ use crate::mechanics::{
     Effect, Group, Operations, Scalar, SceneVisitor, Vector, momentum_of_velocity, velocity_of_momentum,
 };
 use crate::motion::kept::Kept;
+use crate::motion::limits::beyond_solvable;
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, MotionOf, Summation};
 use crate::numbers::{Coordinates as _, Kernel, Vectors, dispatch, is_finite, real};
@@ -28,8 +29,8 @@ pub struct PlanFacts {
     /// Whether the plan defines the inertia instead of the scene: that of bodies whose coordinates couple their
     /// velocities. The scene then consists of potentials alone.
     pub has_own_inertia: bool,
-    /// Whether the errors of [`step`](Plan::step) are those of a stage, so that [`explained`](Plan::explained) must
-    /// convert them before they are returned.
+    /// Whether the errors of [`step`](Plan::step) are those of a stage: a step beyond the largest is reported with the
+    /// largest whole step, [`max_step`](Plan::max_step).
     pub explains: bool,
 }
 
@@ -100,9 +101,10 @@ pub trait Plan<S: Effect>: Sized {
     /// [`SetupError`] if the method can't step the scene.
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError>;
 
-    /// The initial motion, for plans whose advected or prescribed parameters depend on the rest of the motion.
-    fn begun(&self, _scene: &S, motion: MotionOf<S>) -> MotionOf<S> {
-        motion
+    /// The advected parameters in the body frame at the start, from this attitude and momentum: the scene's own, unless
+    /// values are prescribed for each step, or depend on the rest of the motion.
+    fn begun(&self, scene: &S, attitude: &Group<S>, _momentum: &Vector<S>) -> S::Advected {
+        scene.advected().seen_from(attitude)
     }
 
     /// The memory at the beginning of a motion.
@@ -120,11 +122,6 @@ pub trait Plan<S: Effect>: Sized {
         self.step_size()
     }
 
-    /// The advected parameters in space at the start; the scene's own, unless values are prescribed for each step.
-    fn advected(&self, scene: &S) -> S::Advected {
-        scene.advected()
-    }
-
     /// The momentum at a body velocity.
     fn momentum(&self, scene: &S, _attitude: &Group<S>, velocity: &Vector<S>, w: &S::Advected) -> Vector<S> {
         momentum_of_velocity(scene, velocity, w)
@@ -138,11 +135,6 @@ pub trait Plan<S: Effect>: Sized {
     /// The energy, J, if the plan defines the inertia.
     fn energy(&self, scene: &S, motion: &MotionOf<S>) -> Scalar<S> {
         self.velocity(scene, motion).dot(&motion.momentum) * real(0.5) - scene.limit(None, &motion.advected).l
-    }
-
-    /// Whether the lanes of a memory can be stepped together. A memory of a single body always can.
-    fn is_in_step(&self, _kept: &Self::Kept) -> bool {
-        true
     }
 
     /// Makes one step. A plan implements this, or it implements [`run`](Self::run) with
@@ -190,7 +182,7 @@ pub trait Plan<S: Effect>: Sized {
         let mut next = *motion;
         let mut kept = part.keep(scene, &next);
         run_plan(&part, scene, &mut next, &mut kept, (1, None))
-            .map_err(|error| part.explained(error, scene, motion, &kept))?;
+            .map_err(|error| explained(&part, error, (scene, motion, &kept)))?;
         next.steps = motion.steps;
         Ok(next)
     }
@@ -229,12 +221,6 @@ pub trait Plan<S: Effect>: Sized {
         motion.push(impulse);
     }
 
-    /// The error of the whole step for that of a stage: it names the largest solvable step.
-    #[cold]
-    fn explained(&self, error: StepError, _scene: &S, _motion: &MotionOf<S>, _kept: &Self::Kept) -> StepError {
-        error
-    }
-
     /// The largest solvable part of the step from here, in seconds to six digits.
     fn max_step(&self, scene: &S, motion: &MotionOf<S>, _kept: &Self::Kept) -> Scalar<S> {
         let solvable = |fraction: f64| {
@@ -252,6 +238,21 @@ pub trait Plan<S: Effect>: Sized {
 
     /// The approximate number of operations of a step.
     fn cost(&self) -> Cost;
+}
+
+/// The error of the whole step for that of a stage: it names the largest solvable step.
+#[cold]
+pub(crate) fn explained<S: Effect, P: Plan<S>>(
+    plan: &P,
+    error: StepError,
+    (scene, motion, kept): (&S, &MotionOf<S>, &P::Kept),
+) -> StepError {
+    let StepError::BeyondSolvable { .. } = error else { return error };
+    if const { !P::FACTS.explains } {
+        return error;
+    }
+    let largest = plan.max_step(scene, motion, kept);
+    beyond_solvable(scene, plan.step_size(), &motion.momentum, &motion.advected, largest)
 }
 
 /// A function of the motion reached so far and its time, s, that returns the number of further steps; 0 ends the run.
@@ -389,7 +390,7 @@ pub trait Variable<S: Effect>: Plan<S> {
         let (mut next, steps) = (*motion, motion.now().steps);
         let mut guess = if has_ratio { kept.scaled(ratio) } else { part.keep(scene, next.now()) };
         let made = part.step(scene, &mut next, &mut guess);
-        let report = made.map_err(|error| part.explained(error, scene, motion.now(), &guess))?;
+        let report = made.map_err(|error| explained(&part, error, (scene, motion.now(), &guess)))?;
         next.recount(steps);
         *kept = if has_ratio { guess.scaled(back) } else { self.keep(scene, next.now()) };
         *motion = next;

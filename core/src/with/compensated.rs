@@ -100,7 +100,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
     type Kept = (P::Kept, Carry<Group<S>, S::Advected>);
 
-    delegate_plan!(0, |kept| kept.0; facts step_size momentum velocity is_in_step explained max_step cost);
+    delegate_plan!(0, |kept| kept.0; facts step_size momentum velocity max_step cost);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         self.0.refolded(scene, h).map(Self)

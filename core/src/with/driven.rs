@@ -2,8 +2,8 @@
 
 use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
-use crate::mechanics::{Effect, Scalar, SceneVisitor};
-use crate::motion::{MotionOf, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, SumsOf};
+use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
+use crate::motion::{MotionOf, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, SumsOf, explained};
 use crate::numbers::real;
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
@@ -69,16 +69,16 @@ where
 {
     type Kept = P::Kept;
 
-    delegate_plan!(plan, |kept| *kept; step_size keep momentum velocity is_in_step cost push);
+    delegate_plan!(plan, |kept| *kept; step_size keep momentum velocity cost push);
 
-    const FACTS: PlanFacts = PlanFacts { runs: Runs::BySteps, counts_time: true, ..P::FACTS };
+    const FACTS: PlanFacts = PlanFacts { runs: Runs::BySteps, counts_time: true, explains: false, ..P::FACTS };
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, values: self.values.clone() })
     }
 
-    fn advected(&self, _: &S) -> S::Advected {
-        (self.values)(real(0.0))
+    fn begun(&self, _: &S, attitude: &Group<S>, _: &Vector<S>) -> S::Advected {
+        (self.values)(real(0.0)).seen_from(attitude)
     }
 
     fn time(&self, motion: &MotionOf<S>, kept: &P::Kept) -> Scalar<S> {
@@ -94,7 +94,7 @@ where
         let (start, length) = (self.plan.time(&now, &next), self.plan.length(scene, &now, &next, true));
         let end = self.value::<S>(start + length)?;
         let made = self.plan.step_seeing(scene, &mut now, &mut next, &mut self.middles::<S>(start, length));
-        let report = made.map_err(|error| self.plan.explained(error, scene, &now, &next))?;
+        let report = made.map_err(|error| explained(&self.plan, error, (scene, &now, &next)))?;
         let seen = end.seen_from(&now.attitude);
         self.plan.see(&mut now, &mut next, seen);
         motion.replace(now);

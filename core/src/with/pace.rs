@@ -3,7 +3,7 @@
 use super::compensated::CompensatedSums;
 use super::density::DensityMemory;
 use crate::error::{SetupError, StepError};
-use crate::groups::Retraction as _;
+use crate::groups::{Advected as _, Retraction as _};
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector, energy};
 use crate::motion::{
     ElapsedTime, Guess, Motion, MotionOf, OwnStep, Plan, PlanFacts, Runs, StepReport, Stepper, SumsOf,
@@ -80,15 +80,16 @@ impl<S: Effect<Scalar = f64>, P: Pacable<S>> Plan<S> for PacedStep<P> {
     const FACTS: PlanFacts =
         PlanFacts { has_own_inertia: true, runs: Runs::BySteps, varies: true, counts_time: false, ..P::FACTS };
 
-    delegate_plan!(0, |kept| kept.0; step_size is_in_step explained cost);
+    delegate_plan!(0, |kept| kept.0; step_size cost);
 
     fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
         self.0.refolded(scene, h).map(Self)
     }
 
-    fn begun(&self, scene: &S, motion: MotionOf<S>) -> MotionOf<S> {
-        let advected = scene.with_energy(&motion.advected, self.energy(scene, &motion));
-        Motion { advected: advected.map_or(motion.advected, |(w, _)| w), ..motion }
+    fn begun(&self, scene: &S, attitude: &Group<S>, momentum: &Vector<S>) -> S::Advected {
+        let advected = scene.advected().seen_from(attitude);
+        let energy = self.energy(scene, &Motion { attitude: *attitude, momentum: *momentum, advected, steps: 0 });
+        scene.with_energy(&advected, energy).map_or(advected, |(w, _)| w)
     }
 
     fn keep(&self, scene: &S, motion: &MotionOf<S>) -> Self::Kept {

@@ -58,7 +58,7 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
     type Kept = P::Kept;
 
     // The largest step is that of the plan itself, which excludes steps that are solved only in parts.
-    delegate_plan!(plan, |kept| *kept; facts step_size keep momentum velocity is_in_step explained max_step cost push);
+    delegate_plan!(plan, |kept| *kept; facts step_size keep momentum velocity max_step cost push);
 
     fn refolded(&self, scene: &S, h: Scalar<S>) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, at_most: self.at_most })

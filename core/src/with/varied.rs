@@ -80,7 +80,7 @@ impl<S: Effect<Scalar = f64>, P: Variable<S>, L: Lengths<S>> Plan<S> for VariedS
     const FACTS: PlanFacts =
         PlanFacts { runs: Runs::BySteps, counts_time: L::COUNTED, varies: true, explains: false, ..P::FACTS };
 
-    delegate_plan!(plan, |kept| kept.0; step_size momentum velocity is_in_step cost push);
+    delegate_plan!(plan, |kept| kept.0; step_size momentum velocity cost push);
 
     fn refolded(&self, scene: &S, h: f64) -> Result<Self, SetupError> {
         Ok(Self { plan: self.plan.refolded(scene, h)?, lengths: self.lengths.clone() })

@@ -11,7 +11,7 @@ use crate::gradients::{ChangeOf, Linearisable, Pass, Stage as Linear};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
-    Cost, MotionOf, OwnStep, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, SumsOf, Variable, beyond_solvable,
+    Cost, MotionOf, OwnStep, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, SumsOf, Variable, explained,
     half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
@@ -220,7 +220,7 @@ impl<S: Effect> Steerable<S> for Composition<S> {
         let mut kept = part.keep(scene, &next);
         let made =
             part.step_seeing(scene, &mut next, &mut kept, &mut |shares| values(shares.map(|share| share * size)));
-        made.map_err(|error| part.explained(error, scene, motion, &kept))?;
+        made.map_err(|error| explained(&part, error, (scene, motion, &kept)))?;
         next.steps = motion.steps;
         Ok(next)
     }
@@ -251,12 +251,6 @@ impl<S: Effect> Plan<S> for Composition<S> {
 
     /// [`StepError::BeyondSolvable`] reports the limit of the whole step, not of a substep.
     const FACTS: PlanFacts = PlanFacts { explains: true, runs: Runs::BySteps, ..PlanFacts::of::<S>() };
-
-    #[cold]
-    fn explained(&self, error: StepError, scene: &S, motion: &MotionOf<S>, kept: &Self::Kept) -> StepError {
-        let StepError::BeyondSolvable { .. } = error else { return error };
-        beyond_solvable(scene, self.h, &motion.momentum, &motion.advected, self.max_step(scene, motion, kept))
-    }
 
     fn describe(&self, visitor: &mut dyn SceneVisitor<Scalar<S>>) {
         visitor.term(self.scheme.name());

@@ -1,14 +1,13 @@
 //! Diagnosis of steps without a solution: bounds that decide before a solve, and the largest solvable step.
 
-use alloc::vec::Vec;
-
-use super::{OwnStep, kicked};
+use super::OwnStep;
 use crate::error::StepError;
-use crate::groups::{Advected as _, LieGroup, Retraction as _};
-use crate::mechanics::{Effect, Group, Scalar, Vector, estimated_velocity};
-use crate::numbers::{Coordinates as _, Entries as _, largest_lane, real, reported};
+use crate::groups::{Advected as _, Retraction as _};
+use crate::mechanics::{Effect, Group, Scalar, Vector};
+use crate::motion::limits::{beyond_solvable, kicked};
+use crate::numbers::{Coordinates as _, real, reported};
 use crate::solving::{
-    Problem, Root, Solvability, TurningLimits, largest_fraction, newton_system, six_digits, step_terms, turning_limits,
+    Problem, Root, Solvability, TurningLimits, largest_fraction, newton_system, step_terms, turning_limits,
 };
 use nalgebra::SimdComplexField as _;
 
@@ -116,37 +115,4 @@ impl<S: Effect> OwnStep<S> {
         };
         largest_fraction(solvable).map_or(real(0.0), |fraction| self.h * real(fraction))
     }
-}
-
-/// The error that names the largest step, and the turn that the whole step would take.
-pub(crate) fn beyond_solvable<S: Effect>(
-    scene: &S,
-    h: Scalar<S>,
-    momentum: &Vector<S>,
-    advected: &S::Advected,
-    largest: Scalar<S>,
-) -> StepError {
-    // The turn is estimated with the kick at the beginning of the step.
-    let kicked = kicked::<S>(&scene.constants(h), momentum, advected);
-    let (turn, body) = farthest::<Group<S>>(&(estimated_velocity(scene, &kicked, advected) * h));
-    StepError::BeyondSolvable { step: reported(h), largest: six_digits(reported(largest)), turn, body }
-}
-
-/// The largest turn of a body, over all lanes, and for a system the number of that body. Translations are ignored: a
-/// metre isn't a radian.
-fn farthest<G: LieGroup>(change: &G::Vector) -> (f64, Option<usize>) {
-    let mut squares = Vec::new();
-    change.each(&mut |component| squares.push(component * component));
-    let turns = G::turning_components();
-    let of_each = G::DIMENSION / G::BODIES.max(1);
-    let mut farthest = (0.0, None);
-    for body in 0..G::BODIES {
-        let components = (body * of_each..(body + 1) * of_each).filter(|&component| turns[component]);
-        let square = components.fold(real::<G::Scalar>(0.0), |sum, component| sum + squares[component]);
-        let turn = largest_lane(square.simd_sqrt());
-        if turn > farthest.0 {
-            farthest = (turn, (G::BODIES > 1).then_some(body));
-        }
-    }
-    farthest
 }

@@ -3,14 +3,13 @@
 mod diagnosis;
 mod reactions;
 
-pub(crate) use diagnosis::beyond_solvable;
-
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
     Effect, Group, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, pattern,
 };
 use crate::motion::increment::Increment;
+use crate::motion::limits::kicked;
 use crate::motion::plan::{Cost, Plan, PlanFacts, Runs, Steerable, Variable};
 use crate::motion::report::StepReport;
 use crate::motion::summation::{Motion, MotionOf, Summation, SumsOf, is_due};
@@ -314,12 +313,6 @@ fn check_number<S: Effect>(scene: &S) -> Result<(), SetupError> {
     let cause = "is known for constraints on velocities where the Lagrangian is quadratic in the velocity; leave them out, \
                  or write the kinetic energy as a square";
     Err(SetupError::Method { cause })
-}
-
-/// The right-hand side `a = μ + kick_before(w)`.
-#[hot]
-fn kicked<S: Effect>(constants: &S::Constants, momentum: &Vector<S>, w: &S::Advected) -> Vector<S> {
-    if const { S::FACTS.parts.kick_before } { *momentum + S::kick_before(constants, w) } else { *momentum }
 }
 
 /// The Newton Jacobian is that at rest plus a matrix of rank one that is proportional to the right-hand side. If the

@@ -2,10 +2,11 @@
 
 use alloc::vec::Vec;
 
-use super::{OwnStep, kicked};
+use super::OwnStep;
 use crate::groups::LieGroup;
 use crate::mechanics::{Effect, Group, Limit, Vector, normals, pattern};
 use crate::motion::increment::Increment;
+use crate::motion::limits::kicked;
 use crate::motion::summation::{Motion, SumsOf};
 use crate::numbers::{Coordinates as _, real};
 use crate::solving::{Root, newton_residual, step_terms};

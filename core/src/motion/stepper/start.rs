@@ -34,7 +34,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         let attitude = attitude.into();
         check_attitude(&attitude)?;
-        let w = self.plan.advected(&self.scene).seen_from(&attitude);
+        let w = self.plan.begun(&self.scene, &attitude, &Vector::<S>::zero());
         let momentum = self.plan.momentum(&self.scene, &attitude, &velocity, &w);
         if !self.scene.facts().is_quadratic {
             let found = self.plan.velocity(&self.scene, &Motion { attitude, momentum, advected: w, steps: 0 });
@@ -59,7 +59,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         if !momentum.is_finite() {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
-        let w = self.plan.advected(&self.scene).seen_from(&attitude);
+        let w = self.plan.begun(&self.scene, &attitude, &momentum);
         if !self.scene.facts().has_constant_inertia {
             check_inertia::<Group<S>>(&self.scene.inertia(&w))?;
         }
@@ -109,8 +109,8 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
 
     /// The initial state at this attitude and momentum.
     fn begin(&self, attitude: Group<S>, momentum: Vector<S>) -> StateOf<S, P> {
-        let advected = self.plan.advected(&self.scene).seen_from(&attitude);
-        let motion = self.plan.begun(&self.scene, Motion { attitude, momentum, advected, steps: 0 });
+        let advected = self.plan.begun(&self.scene, &attitude, &momentum);
+        let motion = Motion { attitude, momentum, advected, steps: 0 };
         State { motion, kept: self.plan.keep(&self.scene, &motion), elapsed: ElapsedTime::nothing() }
     }
 }

@@ -8,7 +8,8 @@ use crate::groups::layout::Factor;
 use crate::groups::{Advected as _, LieGroup as _};
 use crate::mechanics::{Effect, FactoredInertia, Group, Scalar, Vector, factored_inertia, velocity_and_energy};
 use crate::motion::integrator::{Integrator, run_or_step, write_row};
-use crate::motion::plan::{Cost, Next, NextSteps, Plan, Steerable, Variable, run_plan};
+use crate::motion::kept::Kept as _;
+use crate::motion::plan::{Cost, Next, NextSteps, Plan, Steerable, Variable, explained, run_plan};
 use crate::motion::report::StepReport;
 use crate::motion::state::State;
 use crate::motion::summation::MotionOf;
@@ -32,7 +33,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
             dispatch(Step(self, state))
         };
         match made {
-            Err(error) if P::FACTS.explains => Err(self.plan.explained(error, &self.scene, &state.motion, &state.kept)),
+            Err(error) if P::FACTS.explains => {
+                Err(explained(&self.plan, error, (&self.scene, &state.motion, &state.kept)))
+            }
             made => made,
         }
     }
@@ -63,7 +66,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         next: Next<'_, Group<S>, S::Advected>,
     ) -> Result<u64, StepError> {
         let made = run_plan(&self.plan, &self.scene, &mut state.motion, &mut state.kept, (steps, next));
-        made.map_err(|error| self.plan.explained(error, &self.scene, &state.motion, &state.kept))
+        made.map_err(|error| explained(&self.plan, error, (&self.scene, &state.motion, &state.kept)))
     }
 
     /// The states after each step from here on; an error is the last item.
@@ -284,7 +287,7 @@ impl<S: Effect, P: Plan<S>> Integrator for Stepper<S, P> {
     }
 
     fn is_in_step(&self, state: &Self::State) -> bool {
-        self.plan.is_in_step(&state.kept)
+        state.kept.is_in_step(self.plan.step_size())
     }
 
     fn part(&self, state: &Self::State, fraction: Scalar<S>) -> Result<MotionOf<S>, StepError> {

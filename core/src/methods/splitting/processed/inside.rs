@@ -50,6 +50,15 @@ impl<T: Real, A: Advected<SO3<T>>> Kept<T> for Inside<T, A> {
         let is_rotation = attitude.defect().simd_le(T::simd_default_epsilon() * real(1e4)).all();
         is_rotation.then_some(Self(Some(InsideMotion { attitude, momentum, advected, h })))
     }
+
+    /// A lane from a step of another length needs the inverse processor, which would round the lanes that don't need
+    /// it.
+    fn is_in_step(&self, h: T) -> bool {
+        self.0.is_none_or(|inside| {
+            let is_there = inside.h.simd_eq(h);
+            is_there.all() || !is_there.any()
+        })
+    }
 }
 
 #[cfg(test)]

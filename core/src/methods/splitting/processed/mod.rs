@@ -214,15 +214,6 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for ProcessedSplitting<S,
         Inside(None)
     }
 
-    /// A lane from a step of another length needs the inverse processor, which would round the lanes that don't need
-    /// it.
-    fn is_in_step(&self, kept: &Self::Kept) -> bool {
-        kept.0.is_none_or(|inside| {
-            let is_there = inside.h.simd_eq(self.kernel.h);
-            is_there.all() || !is_there.any()
-        })
-    }
-
     #[hot]
     fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
         &self,
