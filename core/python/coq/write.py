@@ -31,6 +31,7 @@ CLAIMS = {
     "Scales": ("residual", ["newton"]),
     "Residual": ("residual", ["newton", "target"]),
     "Jacobian": ("jacobian", ["newton"]),
+    "Update": ("update", ["newton"]),
     "Attitude": ("attitude", ["finish"]),
     "Momentum": ("momentum", ["finish", "target"]),
     "Transport": ("transport", ["finish", "target"]),
@@ -138,7 +139,7 @@ class Problem:
             if one["kind"] == "symmetric":
                 own[3], own[6], own[7] = own[1], own[2], own[5]
             parameters += own
-        rest = [free, n, 2 * n, n, n, free, n if in_group else 0, 0]
+        rest = [free, n, 2 * n, n, n, free, n if in_group else 0, 0, n + n * n]
         return [h, parameters, half, target, momentum, *(self.new(count) for count in rest)]
 
     def changed(self, data: dict[str, Any]) -> Problem:
