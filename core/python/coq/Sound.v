@@ -169,10 +169,10 @@ Lemma placed_rel l : forall a x m n, V a x -> same_registers m n -> same_registe
 Proof. induction l; intros a' x m n h; destruct h; cbn [placed]; auto using put_rel. Qed.
 Lemma run_after_rel c i j b y a x : V b y -> M a x -> V (run_after p c i j b a) (run_after q c i j y x).
 Proof.
-  intros g h; unfold run_after.
-  assert (s : V (map (fun s => entry p a (fst s) (snd s)) (inputs c) ++ map (ratio p) (literals c))
-                (map (fun s => entry q x (fst s) (snd s)) (inputs c) ++ map (ratio q) (literals c))) by rel.
-  cbn zeta; rewrite (length_rel _ _ _ s); apply map_same; intro; apply get_rel, freed_rel; [apply placed_rel | apply loaded_rel]; auto using empty_rel.
+  intros g h; unfold run_after; cbn zeta.
+  assert (s : V (map (fun s => entry p a (fst s) (snd s)) (inputs c)) (map (fun s => entry q x (fst s) (snd s)) (inputs c))) by rel.
+  assert (r : V (map (ratio p) (literals c)) (map (ratio q) (literals c))) by rel.
+  rewrite (length_rel _ _ _ s), (length_rel _ _ _ r); apply map_same; intro; apply get_rel, freed_rel; auto using placed_rel, loaded_rel, empty_rel.
 Qed.
 
 (* The group *)

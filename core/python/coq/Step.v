@@ -152,8 +152,8 @@ Fixpoint executed (s : set) (k : positive) (l : list operation) (m : registers) 
       let f := fun _ : Datatypes.unit => applied m op in
       executed s (Pos.succ k) r (PositiveMap.add k (if has s k then f tt else idle o f) m)
   end.
-(* The first outputs and so many after them, where the operations behind the first have any values, which are given. Each run of the
-   program is one of these. *)
+(* The first outputs and so many after them, where the first have any values, which are given, unless they are literals. Each run of
+   the program is one of these. *)
 Fixpoint freed (s : set) (k : positive) (l : list operation) (values m : registers) : registers :=
   match l with
   | [] => m
@@ -165,10 +165,11 @@ Fixpoint freed (s : set) (k : positive) (l : list operation) (values m : registe
 Fixpoint placed (l : list positive) (values : row) (m : registers) : registers :=
   match l, values with k :: l, x :: values => placed l values (PositiveMap.add k x m) | _, _ => m end.
 Definition run_after (p : program) (first count : nat) (values : row) (arrays : mat) : row :=
-  let start := map (fun at2 => entry arrays (fst at2) (snd at2)) (inputs p) ++ map ratio (literals p) in
-  let k := Pos.of_succ_nat (length start) in
+  let before := map (fun at2 => entry arrays (fst at2) (snd at2)) (inputs p) in let numbers := map ratio (literals p) in
+  let j := Pos.of_succ_nat (length before) in let k := Pos.of_succ_nat (length before + length numbers) in
   let s := needed k (operations p) (with_all (firstn count (skipn first (outputs p))) (PositiveMap.empty _)) in
-  map (get (freed s k (operations p) (placed (firstn first (outputs p)) values (PositiveMap.empty _)) (loaded 1 start (PositiveMap.empty _))))
+  let free m := placed (firstn first (outputs p)) values m in
+  map (get (freed s k (operations p) (free (PositiveMap.empty _)) (loaded j numbers (free (loaded 1 before (PositiveMap.empty _))))))
     (firstn (first + count)%nat (outputs p)).
 (* The outputs from one, so many. *)
 Definition run (p : program) (first count : nat) (arrays : mat) : row :=

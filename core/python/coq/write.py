@@ -291,8 +291,21 @@ class Problem:
         found: dict[str, str | None] = {}
         for name, (of, programs) in CLAIMS.items():
             if of is None or of in made:
-                found[name] = self.declined.get("texts") if name in OF_TEXTS else None
+                found[name] = self.declined.get("texts") if name in OF_TEXTS else self.mixed() if name == "Update" else None
         return found
+
+    def mixed(self) -> str | None:
+        """Why a solve isn't stated for any Jacobian: it reads operations that are neither of the Jacobian's entries nor behind them."""
+        program, n = self.data["programs"]["newton"], self.n
+        first, free = len(program["inputs"]) + len(program["literals"]), set(program["outputs"][: n + n * n])
+        behind, needed = set(free), set(program["outputs"][n + n * n : 2 * n + n * n]) - free
+        for at, (_, *read) in enumerate(program["operations"], first):
+            if behind.intersection(read):
+                behind.add(at)
+        for at, (_, *read) in reversed(list(enumerate(program["operations"], first))):
+            needed |= set(read) - free if at in needed else set()
+        reads = any(at >= first and at not in behind for at in needed)
+        return "the solve reads parts of the Jacobian's entries" if reads else None
 
     @property
     def stated(self) -> list[str]:
