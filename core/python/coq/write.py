@@ -39,6 +39,8 @@ CLAIMS = {
     "Guess": ("guess", ["finish"]),
     "Seen": ("seen", ["seen"]),
 }
+# Unknowns of a solve that is stated for any Jacobian, whose determinant stands below.
+MOST = 5
 OF_TEXTS = ("Work", "Residual", "Momentum")
 RULES = {"sin": "AngleAt", "cos": "AngleAt", "exp": "ExpAt", "ln": "LnAt", "stumpff": "StumpffAt", "log_ratio": "RatioAt"}
 OPERATIONS = {"+": "Plus", "*": "Times", "/": "Over"}
@@ -295,8 +297,10 @@ class Problem:
         return found
 
     def mixed(self) -> str | None:
-        """Why a solve isn't stated for any Jacobian: it reads operations that are neither of the Jacobian's entries nor behind them."""
+        """Why a solve isn't stated for any Jacobian: it has too many entries, or operations before them are read."""
         program, n = self.data["programs"]["newton"], self.n
+        if n > MOST:
+            return f"the determinant of {n} unknowns has too many terms"
         first, free = len(program["inputs"]) + len(program["literals"]), set(program["outputs"][: n + n * n])
         behind, needed = set(free), set(program["outputs"][n + n * n : 2 * n + n * n]) - free
         for at, (_, *read) in enumerate(program["operations"], first):
