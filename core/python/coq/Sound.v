@@ -159,6 +159,21 @@ Proof.
                 (map (fun s => entry q x (fst s) (snd s)) (inputs c) ++ map (ratio q) (literals c))) by rel.
   cbn zeta; rewrite (length_rel _ _ _ s); apply map_same; intro; apply get_rel, executed_rel, loaded_rel; auto using empty_rel.
 Qed.
+Lemma freed_rel s l x y : same_registers x y -> forall k m n, same_registers m n -> same_registers (freed p s k l x m) (freed q s k l y n).
+Proof.
+  intro h; induction l as [| op l IH]; cbn [freed]; auto; intros; apply IH; apply put_rel; auto.
+  specialize (h k); destruct (PositiveMap.find k x), (PositiveMap.find k y); cbn in h; try tauto.
+  destruct (has s k); [| apply (of_idle p q R keeps)]; apply applied_rel; auto.
+Qed.
+Lemma placed_rel l : forall a x m n, V a x -> same_registers m n -> same_registers (placed p l a m) (placed q l x n).
+Proof. induction l; intros a' x m n h; destruct h; cbn [placed]; auto using put_rel. Qed.
+Lemma run_after_rel c i j b y a x : V b y -> M a x -> V (run_after p c i j b a) (run_after q c i j y x).
+Proof.
+  intros g h; unfold run_after; cbn zeta.
+  assert (s : V (map (fun s => entry p a (fst s) (snd s)) (inputs c)) (map (fun s => entry q x (fst s) (snd s)) (inputs c))) by rel.
+  assert (r : V (map (ratio p) (literals c)) (map (ratio q) (literals c))) by rel.
+  rewrite (length_rel _ _ _ s), (length_rel _ _ _ r); apply map_same; intro; apply get_rel, freed_rel; auto using placed_rel, loaded_rel, empty_rel.
+Qed.
 
 (* The group *)
 
@@ -434,6 +449,13 @@ Proof.
   - apply (zip_rel (dual s) (dual t) (pair R) dual_keeps); auto using still_row, along_rel with rel.
     intros; apply (add_rel (dual s) (dual t) (pair R) dual_keeps); auto.
 Qed.
+Lemma update_rel : agree (update s c v) (update t c x).
+Proof.
+  assert (e : V (run_after s (newton c) (unknowns c + unknowns c * unknowns c) (unknowns c) (nth 13 v []) (arrays s c v (y s v) (a s v) (none s c) (w s c v) []))
+                (run_after t (newton c) (unknowns c + unknowns c * unknowns c) (unknowns c) (nth 13 x []) (arrays t c x (y t x) (a t x) (none t c) (w t c x) [])))
+    by (unfold y, a; apply run_after_rel; auto using v_rel; apply arrays_rel; auto using v_rel, none_rel, w_rel).
+  unfold update; split; cbn [fst snd]; go; exact e.
+Qed.
 Lemma attitude_rel : agree (attitude s c v) (attitude t c x).
 Proof. unfold attitude, a, mu; split; cbn [fst snd]; go; auto with rel; apply flat_rel; go; auto with rel. Qed.
 Lemma momentum_rel : agree (momentum s c v) (momentum t c x).
@@ -460,16 +482,16 @@ Qed.
 End Claims.
 
 (* A claim by its name. *)
-Inductive name := Increments | Work | Target | Scales | Residual | Jacobian | Attitude | Momentum | Transport | Advected | Guess | Seen.
+Inductive name := Increments | Work | Target | Scales | Residual | Jacobian | Update | Attitude | Momentum | Transport | Advected | Guess | Seen.
 Definition claimed (k : name) : claim :=
   match k with
-  | Increments => increments | Work => work | Target => targets | Scales => scales | Residual => residual | Jacobian => jacobian
+  | Increments => increments | Work => work | Target => targets | Scales => scales | Residual => residual | Jacobian => jacobian | Update => update
   | Attitude => attitude | Momentum => momentum | Transport => transport | Advected => advected_ | Guess => guess | Seen => at_attitude
   end.
 Lemma claimed_rel k s t R (keeps : related s t R) c v x : Forall2 (Forall2 R) v x -> agree s t R (claimed k s c v) (claimed k t c x).
 Proof.
   intro; destruct k; cbn [claimed];
-    auto using increments_rel, work_rel, targets_rel, scales_rel, residual_rel, jacobian_rel, attitude_rel, momentum_rel, transport_rel,
+    auto using increments_rel, work_rel, targets_rel, scales_rel, residual_rel, jacobian_rel, update_rel, attitude_rel, momentum_rel, transport_rel,
       advected_rel, guess_rel, at_attitude_rel.
 Qed.
 

@@ -152,6 +152,25 @@ Fixpoint executed (s : set) (k : positive) (l : list operation) (m : registers) 
       let f := fun _ : Datatypes.unit => applied m op in
       executed s (Pos.succ k) r (PositiveMap.add k (if has s k then f tt else idle o f) m)
   end.
+(* The first outputs and so many after them, where the first have any values, which are given, unless they are literals. Each run of
+   the program is one of these. *)
+Fixpoint freed (s : set) (k : positive) (l : list operation) (values m : registers) : registers :=
+  match l with
+  | [] => m
+  | op :: r =>
+      let f := fun _ : Datatypes.unit => applied m op in
+      freed s (Pos.succ k) r values
+        (PositiveMap.add k (match PositiveMap.find k values with Some x => x | None => if has s k then f tt else idle o f end) m)
+  end.
+Fixpoint placed (l : list positive) (values : row) (m : registers) : registers :=
+  match l, values with k :: l, x :: values => placed l values (PositiveMap.add k x m) | _, _ => m end.
+Definition run_after (p : program) (first count : nat) (values : row) (arrays : mat) : row :=
+  let before := map (fun at2 => entry arrays (fst at2) (snd at2)) (inputs p) in let numbers := map ratio (literals p) in
+  let j := Pos.of_succ_nat (length before) in let k := Pos.of_succ_nat (length before + length numbers) in
+  let s := needed k (operations p) (with_all (firstn count (skipn first (outputs p))) (PositiveMap.empty _)) in
+  let free m := placed (firstn first (outputs p)) values m in
+  map (get (freed s k (operations p) (free (PositiveMap.empty _)) (loaded j numbers (free (loaded 1 before (PositiveMap.empty _))))))
+    (firstn (first + count)%nat (outputs p)).
 (* The outputs from one, so many. *)
 Definition run (p : program) (first count : nat) (arrays : mat) : row :=
   let wanted := firstn count (skipn first (outputs p)) in
@@ -303,7 +322,7 @@ Variable c : certificate.
 Notation row := (list (T o)).
 Notation mat := (list (list (T o))).
 (* The numbers of all variables: h, parameters, y, a, μ, w, coordinates of g, history, displacements before and after, others of w
-   and g, and unknowns of functions. *)
+   and g, unknowns of functions, and any residual and Jacobian. *)
 Variable v : mat.
 Definition h := entry o v 0 0.
 Definition p := nth 1 v [].
@@ -400,6 +419,13 @@ Definition jacobian : equation o :=
     (map (still o) (a o v)) (stills o (w o c v))) in
   let slopes := map slope (seq 0 n) in
   (system o c v n (n * n) (y o v) (a o v) (w o c v), concat (tab o n n (fun i j => at_ o i (nth j slopes [])))).
+
+(* J u = r, whatever the residual and the Jacobian are. *)
+Definition update : equation o :=
+  let n := n in
+  let all := run_after o (newton c) (n + n * n) n (nth 13 v []) (arrays o c v (y o v) (a o v) (none o c) (w o c v) []) in
+  let r := firstn n all in let u := skipn (n + n * n) all in
+  (map (fun i => dot o u (firstn n (skipn (n + i * n) all))) (seq 0 n), r).
 
 Definition attitude : equation o := (ended o c v 0 (squares c) (a o v) (mu o v), flat o (products o (g o c v) (F o c v))).
 Definition momentum : equation o :=

@@ -31,6 +31,7 @@ CLAIMS = {
     "Scales": ("residual", ["newton"]),
     "Residual": ("residual", ["newton", "target"]),
     "Jacobian": ("jacobian", ["newton"]),
+    "Update": ("update", ["newton"]),
     "Attitude": ("attitude", ["finish"]),
     "Momentum": ("momentum", ["finish", "target"]),
     "Transport": ("transport", ["finish", "target"]),
@@ -38,6 +39,8 @@ CLAIMS = {
     "Guess": ("guess", ["finish"]),
     "Seen": ("seen", ["seen"]),
 }
+# Unknowns of a solve that is stated for any Jacobian, whose determinant stands below.
+MOST = 5
 OF_TEXTS = ("Work", "Residual", "Momentum")
 RULES = {"sin": "AngleAt", "cos": "AngleAt", "exp": "ExpAt", "ln": "LnAt", "stumpff": "StumpffAt", "log_ratio": "RatioAt"}
 OPERATIONS = {"+": "Plus", "*": "Times", "/": "Over"}
@@ -138,7 +141,7 @@ class Problem:
             if one["kind"] == "symmetric":
                 own[3], own[6], own[7] = own[1], own[2], own[5]
             parameters += own
-        rest = [free, n, 2 * n, n, n, free, n if in_group else 0, 0]
+        rest = [free, n, 2 * n, n, n, free, n if in_group else 0, 0, n + n * n]
         return [h, parameters, half, target, momentum, *(self.new(count) for count in rest)]
 
     def changed(self, data: dict[str, Any]) -> Problem:
@@ -290,8 +293,23 @@ class Problem:
         found: dict[str, str | None] = {}
         for name, (of, programs) in CLAIMS.items():
             if of is None or of in made:
-                found[name] = self.declined.get("texts") if name in OF_TEXTS else None
+                found[name] = self.declined.get("texts") if name in OF_TEXTS else self.mixed() if name == "Update" else None
         return found
+
+    def mixed(self) -> str | None:
+        """Why a solve isn't stated for any Jacobian: it has too many entries, or operations before them are read."""
+        program, n = self.data["programs"]["newton"], self.n
+        if n > MOST:
+            return f"the determinant of {n} unknowns has too many terms"
+        first, free = len(program["inputs"]) + len(program["literals"]), set(program["outputs"][: n + n * n])
+        behind, needed = set(free), set(program["outputs"][n + n * n : 2 * n + n * n]) - free
+        for at, (_, *read) in enumerate(program["operations"], first):
+            if behind.intersection(read):
+                behind.add(at)
+        for at, (_, *read) in reversed(list(enumerate(program["operations"], first))):
+            needed |= set(read) - free if at in needed else set()
+        reads = any(at >= first and at not in behind for at in needed)
+        return "the solve reads parts of the Jacobian's entries" if reads else None
 
     @property
     def stated(self) -> list[str]:
