@@ -241,6 +241,9 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
         if const { Self::IS_ADDED } {
             return -increment;
         }
+        if let Some(size) = const { Self::ROTATIONS } {
+            return rigid::inverse_increment(size, increment);
+        }
         -times(&Self::inverse_of(&(increment + SMatrix::identity())), increment, Self::ROWS)
     }
 
@@ -255,6 +258,9 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> LieGroup for 
     fn adjoint_transpose_increment(increment: &SMatrix<T, N, N>, momentum: &SVector<T, D>) -> SVector<T, D> {
         if const { Self::IS_ADDED } {
             return SVector::zeros();
+        }
+        if let Some(size) = const { Self::ROTATIONS } {
+            return rigid::adjoint_transpose_increment(size, increment, momentum);
         }
         let inverse_increment = Self::inverse_increment(increment);
         let covector = Self::dual_hat(momentum);

@@ -11,7 +11,7 @@ const fn turned(size: usize, k: usize) -> (usize, usize) {
 }
 
 /// The number of rotations of space, or of the plane.
-const fn turns(size: usize) -> usize {
+pub(super) const fn turns(size: usize) -> usize {
     size * (size - 1) / 2
 }
 
@@ -57,87 +57,67 @@ pub(super) const fn size_of<const N: usize, const D: usize>(basis: &[[[f64; N]; 
     None
 }
 
-/// `I + ŷ` for half the coordinates `y` of an increment, or `I − ŷ` for those of its inverse.
-#[hot]
-pub(super) fn factor<T: Real, const N: usize, const D: usize>(size: usize, half: &SVector<T, D>) -> SMatrix<T, N, N> {
-    let mut matrix = SMatrix::identity();
-    for k in 0..turns(size) {
-        let (row, column) = turned(size, k);
-        matrix[(row, column)] = half[k];
-        matrix[(column, row)] = -half[k];
-    }
-    for column in 0..N - size {
-        for row in 0..size {
-            matrix[(row, size + column)] = half[turns(size) + column * size + row];
-        }
-    }
-    matrix
+/// The first component of a column beside the rotations.
+pub(super) const fn place(size: usize, column: usize) -> usize {
+    turns(size) + (column - size) * size
 }
 
-/// The tangent of the Cayley map by half the coordinates, with the columns `2 (A E_j B)^∨` for `A = (I − ŷ)⁻¹` and
-/// `B = (I + ŷ)⁻¹`.
+/// The increment `[Sᵀ, −(t + Sᵀt); 0, 0]` of the inverse.
 #[hot]
-pub(super) fn tangent_of_half<T: Real, const N: usize, const D: usize>(
+pub(super) fn inverse_increment<T: Real, const N: usize>(
     size: usize,
-    a: &SMatrix<T, N, N>,
-    b: &SMatrix<T, N, N>,
-) -> SMatrix<T, D, D> {
-    let (turns, mut columns) = (turns(size), SMatrix::zeros());
-    let twice = *a + *a;
-    for j in 0..turns {
-        let (row, column) = turned(size, j);
-        let moved =
-            |a: &SMatrix<T, N, N>, p: usize, q: usize| a[(p, row)] * b[(column, q)] - a[(p, column)] * b[(row, q)];
-        for k in 0..turns {
-            // A rotation's generator has the squared length 2.
-            let (p, q) = turned(size, k);
-            columns[(k, j)] = moved(a, p, q) - moved(a, q, p);
-        }
-        for beside in 0..N - size {
-            for p in 0..size {
-                columns[(turns + beside * size + p, j)] = moved(&twice, p, size + beside);
-            }
-        }
-    }
-    for beside in 0..N - size {
+    increment: &SMatrix<T, N, N>,
+) -> SMatrix<T, N, N> {
+    let mut inverse = SMatrix::zeros();
+    for i in 0..size {
         for j in 0..size {
-            for p in 0..size {
-                let first = turns + beside * size;
-                columns[(first + p, first + j)] = twice[(p, j)] * b[(size + beside, size + beside)];
+            inverse[(i, j)] = increment[(j, i)];
+        }
+        for column in size..N {
+            let mut sum = increment[(0, i)] * increment[(0, column)];
+            for k in 1..size {
+                sum += increment[(k, i)] * increment[(k, column)];
             }
+            inverse[(i, column)] = -(increment[(i, column)] + sum);
         }
     }
-    columns
+    inverse
 }
 
-/// The product `A T` for a [tangent](tangent_of_half) `T`: a translation changes nothing but itself.
+/// The change `(Sᵀ(m − Σ t × f) − Σ t × f, Sᵀf)` of the moment and of the force of each column by `Ad*_F`.
 #[hot]
-pub(super) fn times_tangent<T: Real, const N: usize, const D: usize>(
+pub(super) fn adjoint_transpose_increment<T: Real, const N: usize, const D: usize>(
     size: usize,
-    a: &SMatrix<T, D, D>,
-    tangent: &SMatrix<T, D, D>,
-) -> SMatrix<T, D, D> {
-    let (turns, mut product) = (turns(size), SMatrix::zeros());
-    for i in 0..D {
-        for j in 0..turns {
-            let mut sum = a[(i, 0)] * tangent[(0, j)];
-            for k in 1..D {
-                sum += a[(i, k)] * tangent[(k, j)];
-            }
-            product[(i, j)] = sum;
+    increment: &SMatrix<T, N, N>,
+    momentum: &SVector<T, D>,
+) -> SVector<T, D> {
+    let (mut change, mut arms) = (SVector::<T, D>::zeros(), SVector::<T, 3>::zeros());
+    for column in size..N {
+        let (first, t) = (place(size, column), |i: usize| increment[(i, column)]);
+        let f = |i: usize| momentum[first + i];
+        for k in 0..turns(size) {
+            let (p, q) = if size == 2 { (0, 1) } else { ((k + 1) % 3, (k + 2) % 3) };
+            let arm = t(p) * f(q) - t(q) * f(p);
+            arms[k] = if column == size { arm } else { arms[k] + arm };
         }
-        for beside in 0..N - size {
-            let first = turns + beside * size;
-            for j in first..first + size {
-                let mut sum = a[(i, first)] * tangent[(first, j)];
-                for k in first + 1..first + size {
-                    sum += a[(i, k)] * tangent[(k, j)];
-                }
-                product[(i, j)] = sum;
+        for i in 0..size {
+            let mut sum = increment[(0, i)] * f(0);
+            for k in 1..size {
+                sum += increment[(k, i)] * f(k);
             }
+            change[first + i] = sum;
         }
     }
-    product
+    if size == 2 {
+        change[0] = -arms[0];
+        return change;
+    }
+    for i in 0..3 {
+        let rest = |k: usize| momentum[k] - arms[k];
+        let sum = increment[(0, i)] * rest(0) + increment[(1, i)] * rest(1) + increment[(2, i)] * rest(2);
+        change[i] = sum - arms[i];
+    }
+    change
 }
 
 /// The square of the distance of the rows below the rotation, whose size is `K`, from those of the identity.

@@ -2,11 +2,11 @@
 
 use nalgebra::{RealField, SMatrix, SVector, SimdBool as _, Vector1, one, zero};
 
-use super::{CayleyRetraction, ExponentialRetraction, Retraction};
-use crate::groups::affine::{inverse_by_elimination, inverse_of_four, inverse_of_three, times};
+use super::{CayleyRetraction, ExponentialRetraction, Retraction, rigid};
+use crate::groups::affine::{inverse_of_four, inverse_of_three, times};
 use crate::groups::{
     Generators, LieGroup, MatrixGroup, basis, cubes, dynamic, exponential, inverse, is_closed_under_cayley,
-    lane_by_lane, logarithm, products_vanish, rigid, squares,
+    lane_by_lane, logarithm, products_vanish, squares,
 };
 use crate::numbers::{Coordinates, Mask, Real, nowhere, real};
 
@@ -58,14 +58,10 @@ fn inverse_of_factor<K: Generators<N, D>, T: Real, const N: usize, const D: usiz
     half: &SVector<T, D>,
 ) -> SMatrix<T, N, N> {
     let rows = const { MatrixGroup::<K, T, N, D>::ROWS };
-    let matrix = match const { MatrixGroup::<K, T, N, D>::ROTATIONS } {
-        Some(size) => rigid::factor(size, half),
-        None => SMatrix::identity() + MatrixGroup::<K, T, N, D>::hat(half),
-    };
+    let matrix = SMatrix::identity() + MatrixGroup::<K, T, N, D>::hat(half);
     match (rows, N) {
         (2, 3) => inverse_of_three(&matrix),
         (3, 4) => inverse_of_four(&matrix),
-        (_, 5..) if const { MatrixGroup::<K, T, N, D>::ROTATIONS.is_some() } => inverse_by_elimination(&matrix, rows),
         _ => lane_by_lane(&matrix, inverse::<T::Element, N>),
     }
 }
@@ -86,6 +82,9 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
     fn increment_of_half(half: &SVector<T, D>) -> SMatrix<T, N, N> {
         if let Some(cubes) = const { &Chart::<K, N, D>::CUBES } {
             return product::<K, T, N, D>(cubes, half, |_, _| {});
+        }
+        if let Some(size) = const { MatrixGroup::<K, T, N, D>::ROTATIONS } {
+            return rigid::increment_of_half(size, half);
         }
         let hat = MatrixGroup::<K, T, N, D>::hat(&(half + half));
         // If products vanish, `(I − ŷ)⁻¹` acts on ŷ as the identity.
@@ -121,10 +120,10 @@ impl<K: Generators<N, D>, T: Real, const N: usize, const D: usize> Retraction<Ma
             product::<K, T, N, D>(cubes, half, |k, column| tangent.set_column(k, &column));
             return tangent;
         }
-        let [minus, plus] = [-half, *half].map(|y| inverse_of_factor::<K, T, N, D>(&y));
         if let Some(size) = const { MatrixGroup::<K, T, N, D>::ROTATIONS } {
-            return rigid::tangent_of_half(size, &minus, &plus);
+            return rigid::tangent_of_half::<T, N, D>(size, half);
         }
+        let [minus, plus] = [-half, *half].map(|y| inverse_of_factor::<K, T, N, D>(&y));
         let mut tangent = SMatrix::<T, D, D>::zeros();
         for j in 0..D {
             let moved = minus * basis::<K, T, N, D>(j) * plus;

@@ -5,6 +5,7 @@
 //! corrections onto the previous `F` would let its rounding errors pile up.
 
 mod matrix_group;
+mod rigid;
 
 use nalgebra::{Matrix3, RealField, Vector3};
 

@@ -42,6 +42,9 @@ const ROTATIONS: [[f64; 9]; 3] = [
     [0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
 ];
 
+/// The basis of the rotations of the plane.
+const TURN: [f64; 4] = [0.0, -1.0, 1.0, 0.0];
+
 impl Basis {
     /// The basis of these matrices.
     pub(super) fn of(generators: &[Vec<f64>]) -> Result<Self, StepRefusal> {
@@ -96,6 +99,24 @@ impl Basis {
         }
         let is_traceless = |e: &Vec<f64>| vanish(e[0], e[3]);
         if n == 2 && all.iter().all(is_traceless) { Form::Unimodular } else { Form::General }
+    }
+
+    /// The number of rows of the rotations in a group of all rigid motions of the plane or of space, with any number of columns
+    /// beside the rotation, in the basis of the library's groups: rotations, then the columns row by row.
+    pub(super) fn rigid_motions(&self) -> Option<usize> {
+        [2, 3].into_iter().filter(|&rows| rows < self.size).find(|&rows| {
+            let n = self.size;
+            let wider = |e: &[f64]| -> Vec<f64> {
+                let inside = |at: usize| at / n < rows && at % n < rows;
+                (0..n * n).map(|at| if inside(at) { e[at / n * rows + at % n] } else { 0.0 }).collect()
+            };
+            let turns: Vec<Vec<f64>> =
+                if rows == 2 { vec![wider(&TURN)] } else { ROTATIONS.iter().map(|e| wider(e)).collect() };
+            let unit =
+                |column: usize, row: usize| (0..n * n).map(|at| f64::from(u8::from(at == row * n + column))).collect();
+            let moves = (rows..n).flat_map(|column| (0..rows).map(move |row| unit(column, row)));
+            turns.into_iter().chain(moves).eq(self.generators.iter().cloned())
+        })
     }
 
     /// Coordinates about the identity that stay in the group.

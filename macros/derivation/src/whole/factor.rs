@@ -6,6 +6,7 @@ use super::StepRefusal;
 use super::basis::{Basis, Form};
 use super::matrix::Matrix;
 use super::relations::{Relations, restored};
+use super::rigid::{self, rotation, tangent_of_rotation};
 use super::values::{Value, Words};
 use crate::mathematics::chart::{Chart, cube, times};
 use crate::staged::{Array, Source};
@@ -21,6 +22,8 @@ pub struct MatrixFactor {
     pub form: Form,
     /// The coordinates of increments.
     pub chart: Chart,
+    /// The number of rows of the rotations in a group of [all rigid motions](Basis::rigid_motions).
+    motions: Option<usize>,
     relations: Relations,
     /// The place of its first entry in an attitude.
     pub entry: usize,
@@ -31,9 +34,9 @@ pub struct MatrixFactor {
 impl MatrixFactor {
     pub(super) fn of(name: &str, generators: &[Vec<f64>], [entry, component]: [usize; 2]) -> Result<Self, StepRefusal> {
         let basis = Basis::of(generators)?;
-        let (form, chart) = (basis.form(), basis.chart()?);
+        let (form, chart, motions) = (basis.form(), basis.chart()?, basis.rigid_motions());
         let relations = Relations::of(&basis);
-        Ok(Self { name: name.to_owned(), basis, form, chart, relations, entry, component })
+        Ok(Self { name: name.to_owned(), basis, form, chart, motions, relations, entry, component })
     }
 
     /// The number of rows of its matrices.
@@ -132,6 +135,9 @@ impl MatrixFactor {
         if self.form == Form::Rotation {
             return rotation(words, half);
         }
+        if let Some(rows) = self.motions {
+            return rigid::increment(words, [rows, self.size()], half);
+        }
         if self.chart == Chart::Product {
             return self.product(words, half).1;
         }
@@ -186,6 +192,9 @@ impl MatrixFactor {
         }
         if self.form == Form::Rotation {
             return tangent_of_rotation(words, half);
+        }
+        if let Some(rows) = self.motions {
+            return rigid::tangent(words, rows, half);
         }
         let (n, count, two) = (self.size(), self.dimension(), Value::of(2.0));
         if self.form == Form::Translation {
@@ -254,6 +263,9 @@ impl MatrixFactor {
 
     /// `F⁻¹ − I`.
     pub(super) fn inverse_increment(&self, words: &mut Words, d: &Matrix) -> Matrix {
+        if let Some(rows) = self.motions {
+            return rigid::inverse_increment(words, rows, d);
+        }
         match self.form {
             Form::Rotation => d.transpose(),
             Form::Translation => d.negated(words),
@@ -272,6 +284,9 @@ impl MatrixFactor {
 
     /// `Ad*_F μ − μ`.
     pub(super) fn coadjoint_change(&self, words: &mut Words, d: &Matrix, mu: &[Value]) -> Vec<Value> {
+        if let Some(rows) = self.motions {
+            return rigid::coadjoint_change(words, rows, d, mu);
+        }
         match self.form {
             Form::Rotation => (0..3).map(|i| words.dot(&d.column(i), mu)).collect(),
             Form::Translation => vec![Value::ZERO; mu.len()],
@@ -337,43 +352,4 @@ impl MatrixFactor {
         let n = self.size();
         Matrix::of(n, n, |i, j| Value::Input(Source::new(array, self.entry + i * n + j)))
     }
-}
-
-/// `2/(1 + y·y)`, and its products with half the Cayley coordinates on SO(3).
-fn scaled(words: &mut Words, half: &[Value]) -> (Value, [Value; 3]) {
-    let square = words.dot(half, half);
-    let one = words.add(Value::ONE, square);
-    let scale = words.divide(Value::of(2.0), one);
-    (scale, [half[0], half[1], half[2]].map(|entry| words.multiply(scale, entry)))
-}
-
-/// The columns of `(I + ŷ) 2/(1 + y·y)`.
-fn tangent_of_rotation(words: &mut Words, half: &[Value]) -> Vec<Vec<Value>> {
-    let (scale, [x, y, z]) = scaled(words, half);
-    let [minus_x, minus_y, minus_z] = [x, y, z].map(|entry| words.negate(entry));
-    vec![vec![scale, z, minus_y], vec![minus_z, scale, x], vec![y, minus_x, scale]]
-}
-
-/// `F − I` of half the Cayley coordinates on SO(3).
-fn rotation(words: &mut Words, half: &[Value]) -> Matrix {
-    let (x, y, z) = (half[0], half[1], half[2]);
-    let (_, [bx, by, bz]) = scaled(words, half);
-    let [xx, yy, zz] = [(bx, x), (by, y), (bz, z)].map(|(a, b)| words.multiply(a, b));
-    let [xy, xz, yz] = [(bx, y), (bx, z), (by, z)].map(|(a, b)| words.multiply(a, b));
-    let [xx, yy, zz] = [(yy, zz), (xx, zz), (xx, yy)].map(|(a, b)| {
-        let sum = words.add(a, b);
-        words.negate(sum)
-    });
-    let entries = vec![
-        xx,
-        words.subtract(xy, bz),
-        words.add(xz, by),
-        words.add(xy, bz),
-        yy,
-        words.subtract(yz, bx),
-        words.subtract(xz, by),
-        words.add(yz, bx),
-        zz,
-    ];
-    Matrix { rows: 3, columns: 3, entries }
 }

@@ -12,7 +12,7 @@
 //!
 //! The files depend on each other in one direction: `hamiltonian → step`, `{step → {limit, certified, reverse}, collocation, directions}
 //! → tangent → constraints → writer →
-//! {actions, solved} → factor → relations → {basis, matrix → values}`.
+//! {actions, solved} → factor → {relations, rigid} → {basis, matrix → values}`.
 
 mod actions;
 mod basis;
@@ -26,6 +26,7 @@ mod limit;
 mod matrix;
 mod relations;
 mod reverse;
+mod rigid;
 mod solved;
 mod step;
 mod tangent;
