@@ -137,10 +137,13 @@ fn a_body_among_several_has_the_numbers_of_one() {
              {prefix}air_drag = {{ c = 0.02, air = \"orbit\" }}\n"
         )
     };
-    let start = "start.quaternion = [0.8, 0.1, -0.5, 0.3]\nstart.velocity = [0.3, -0.2, 0.5]\n";
-    for (control, method) in
-        [("every = 0.1", ""), ("at = \"both ends\"", ""), ("every = 0.1", "method = { composition = \"Suzuki 4\" }")]
-    {
+    let composed = "method = { composition = \"Suzuki 4\" }";
+    for (control, method, frame) in [
+        ("every = 0.1", "", ""),
+        ("at = \"both ends\"", "", "start.relative_to = \"local vertical\"\n"),
+        ("every = 0.1", composed, ""),
+    ] {
+        let start = format!("start.quaternion = [0.8, 0.1, -0.5, 0.3]\nstart.velocity = [0.3, -0.2, 0.5]\n{frame}");
         let (drag, method) = (method.is_empty(), method);
         let kept = |text: String| {
             if drag {
@@ -243,6 +246,11 @@ fn devices_of_several_bodies_name_their_bodies() {
             "`field` of `dipole` follows the orbit, and the file has no table `[orbit]`",
         ),
         (
+            "start.euler = [0, 0, 0]\nstart.velocity = [0.1",
+            "start.relative_to = \"the planet\"\nstart.velocity = [0.1",
+            "14:21: a start is relative to space, or to the \"local vertical\"",
+        ),
+        (
             "[run]",
             "[[event]]\nname = \"e\"\nbody = \"hub\"\nenergy = 1\n[run]",
             "this quantity is that of all bodies: leave `body` out",
@@ -258,6 +266,11 @@ fn devices_of_several_bodies_name_their_bodies() {
         let found = refused(&folder, &SATELLITE.replace(old, new));
         assert!(found.contains(message), "{found}");
     }
+    let (_, bodies) = SATELLITE.split_once("[[body]]").unwrap();
+    let (body, _) = bodies.split_once("[[body]]").unwrap();
+    let start = "start.relative_to = \"local vertical\"";
+    let found = refused(&folder, &format!("title = \"A hub\"\n[[body]]{body}{start}\n[run]\nstep = 1\nduration = 2\n"));
+    assert!(found.contains("9:21: the local vertical is that of an orbit, and the file has no table"), "{found}");
     let one = "title = \"One\"\nstart = { euler = [0, 0, 0], velocity = [0, 0, 1] }\nbody.moments = [1, 2, 2.5]\n\
                [[wheel]]\nbody = \"a\"\naxis = [0, 0, 1]\ninertia = 1\n[run]\nstep = 0.1\nduration = 1\n";
     let found = refused(&folder, one);

@@ -13,7 +13,7 @@ use crate::file::kepler::Orbit;
 use crate::file::mistake::{SpanMessage, advised};
 use crate::file::parameter::{in_value, list, matrix};
 use crate::file::quantity::{Angle, Scalar};
-use crate::file::start::Start;
+use crate::file::start::{Start, in_space, orbit_of};
 
 /// The initial attitude, as the matrices of the factors row by row, and the velocity or the momentum, body frame.
 #[derive(Clone, Default)]
@@ -128,12 +128,7 @@ struct Place<'t, 'a> {
 impl Place<'_, '_> {
     /// The start of a body relative to the local vertical of an orbit at the time zero.
     fn relative(&self, frame: &Value<'_>, orbit: Option<&Orbit>) -> Result<Beginning, SpanMessage> {
-        if frame.get_ref().as_str() != Some("local vertical") {
-            return Err((frame.span(), "a start is relative to space, or to the \"local vertical\"".to_owned()));
-        }
-        let orbit = orbit.ok_or_else(|| {
-            (frame.span(), "the local vertical is that of an orbit, and the file has no table `[orbit]`".to_owned())
-        })?;
+        let orbit = orbit_of(frame.get_ref().as_str(), frame.span(), orbit)?;
         if let Some(momentum) = self.table.get("momentum") {
             let message = "a start relative to the local vertical has a `velocity`";
             return Err((momentum.span(), message.to_owned()));
@@ -141,9 +136,8 @@ impl Place<'_, '_> {
         let mut table = self.table.clone();
         table.remove(RELATIVE);
         let own = Place { table: &table, ..*self }.start()?;
-        let rotation = *own.rotation().as_matrix();
-        let attitude = orbit.local_vertical(0.0) * rotation;
-        let velocity = Vector3::from_column_slice(&own.velocity) + attitude.tr_mul(&orbit.turning(0.0));
+        let velocity = Vector3::from_column_slice(&own.velocity);
+        let (attitude, velocity) = in_space(orbit, own.rotation().as_matrix(), &velocity);
         let velocity = velocity.as_slice().to_vec();
         Ok(Beginning { attitude: by_rows(&attitude), velocity, is_by_momentum: false, is_relative: true })
     }

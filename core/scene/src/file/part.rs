@@ -13,10 +13,11 @@ use crate::file::body::{AnyInertia, INERTIA, InertiaRows, Kinetic, Moments, Nons
 use crate::file::effects::{
     AirDragTable, DipoleTable, DragTable, EFFECTS, EffectEntry, MagneticDampingTable, RotorTable, Table, TorqueTable,
 };
+use crate::file::kepler::Orbit;
 use crate::file::mistake::SpanMessage;
 use crate::file::quantity::{self, Density, Length, Mass, PositiveScalar, Speed, Triple};
 use crate::file::shape::{BoxTable, RoundTable, Shape, SphereTable};
-use crate::file::start::Start;
+use crate::file::start::{FramedStart, Start};
 use crate::file::text::check_name;
 
 #[derive(Clone)]
@@ -78,7 +79,7 @@ pub(crate) struct BodyTable {
     kinetic: Option<Spanned<Kinetic>>,
     position: Option<Triple<Length>>,
     moving: Option<Triple<Speed>>,
-    start: Option<Start>,
+    start: Option<FramedStart>,
     dipole: Option<DipoleTable>,
     rotor: Option<RotorTable>,
     drag: Option<DragTable>,
@@ -172,11 +173,11 @@ impl BodyTable {
     pub(crate) fn body(
         self,
         span: Range<usize>,
-        has_orbit: bool,
+        orbit: Option<&Orbit>,
     ) -> Result<(SystemBody, Range<usize>, bool), SpanMessage> {
         let shape = self.shape().map_err(|message| (span.clone(), message.to_owned()))?;
         let mass = self.mass(shape.as_ref());
-        let effects = mass.as_ref().map_or(Ok(Vec::new()), |(_, J)| self.effects(J.as_ref(), has_orbit));
+        let effects = mass.as_ref().map_or(Ok(Vec::new()), |(_, J)| self.effects(J.as_ref(), orbit.is_some()));
         let Self { name, kinetic, position, moving, start, .. } = self;
         check_name("a body", name.get_ref()).map_err(|message| (name.span(), message))?;
         if name.get_ref() == SPACE {
@@ -204,7 +205,8 @@ impl BodyTable {
         }
         let moving = moving.map_or_else(Vector3::zeros, |moving| moving.value);
         let position = position.map_or_else(Vector3::zeros, |position| position.value);
-        let start = start.unwrap_or(Start { attitude: UnitQuaternion::identity(), velocity: Vector3::zeros() });
+        let rest = Start { attitude: UnitQuaternion::identity(), velocity: Vector3::zeros() };
+        let start = start.map_or(Ok(rest), |start| start.in_space(orbit))?;
         let place = name.span();
         let body = SystemBody { name: name.into_inner(), m, J, shape, kinetic, position, moving, start, effects };
         Ok((body, place, has_place))

@@ -88,7 +88,7 @@ pub(crate) fn several(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -
     let SystemTable { title, gravity_gradient, orbit, pointing, event, run, picture, output, .. } = table;
     let (control, wheel) = (table.control, table.wheel);
     let gravity = table.gravity.map(|field| (field.g.value, field.up.0));
-    let system = of_tables((table.body, orbit.is_some()), table.joint, table.spring, places).map_err(located)?;
+    let system = of_tables((table.body, orbit.as_ref()), table.joint, table.spring, places).map_err(located)?;
     let observed = SceneFile { title, run, pointing, picture, event, output, ..SceneFile::default() };
     let mut file = SceneFile { orbit, control, wheel, gravity_gradient, ..observed };
     file.run.count(document, file.orbit.as_ref()).map_err(located)?;
@@ -111,7 +111,7 @@ pub(crate) fn several(path: &Path, document: &Document<'_>, lines: &Lines<'_>) -
 
 /// The bodies of their tables, with the joints and springs between them.
 fn of_tables(
-    (tables, has_orbit): (Vec<Spanned<BodyTable>>, bool),
+    (tables, orbit): (Vec<Spanned<BodyTable>>, Option<&Orbit>),
     joints: Vec<Spanned<JointTable>>,
     springs: Vec<Spanned<SpringTable>>,
     places: SystemPlaces,
@@ -120,7 +120,7 @@ fn of_tables(
     let (mut is_placed, mut numbered) = (Vec::new(), BTreeMap::new());
     for body in tables {
         let span = body.span();
-        let (body, name, has_place) = body.into_inner().body(span, has_orbit)?;
+        let (body, name, has_place) = body.into_inner().body(span, orbit)?;
         if numbered.insert(body.name.clone(), bodies.len()).is_some() {
             return Err((name, format!("there are two bodies called `{}`", body.name)));
         }

@@ -1,13 +1,18 @@
 //! The start of a motion: attitude and velocity.
 
 use std::fmt;
+use std::ops::Range;
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use liestep::SO3;
+use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, Visitor};
+use toml::Spanned;
 
 use crate::file::euler::{Angles, Sequence};
+use crate::file::kepler::Orbit;
 use crate::file::key::refuse;
+use crate::file::mistake::SpanMessage;
 use crate::file::quantity::{Angle, Number, Rate, Scalar, Triple};
 
 /// The initial attitude, body to space, and the angular velocity, body frame, rad/s.
@@ -15,6 +20,46 @@ use crate::file::quantity::{Angle, Number, Rate, Scalar, Triple};
 pub(crate) struct Start {
     pub(crate) attitude: UnitQuaternion<f64>,
     pub(crate) velocity: Vector3<f64>,
+}
+
+/// A start whose axes may be those of the local vertical.
+pub(crate) struct FramedStart {
+    own: Start,
+    frame: Option<Spanned<String>>,
+}
+
+impl FramedStart {
+    /// The start in space at the time zero, with the orbit of the file, if it has one.
+    pub(crate) fn in_space(self, orbit: Option<&Orbit>) -> Result<Start, SpanMessage> {
+        let Self { own, frame: Some(frame) } = self else { return Ok(self.own) };
+        let orbit = orbit_of(Some(frame.get_ref()), frame.span(), orbit)?;
+        let (attitude, velocity) = in_space(orbit, SO3::from(own.attitude).as_matrix(), &own.velocity);
+        let attitude = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(attitude));
+        Ok(Start { attitude, velocity })
+    }
+}
+
+/// The orbit of the frame that a start is relative to.
+pub(crate) fn orbit_of<'o>(
+    frame: Option<&str>,
+    span: Range<usize>,
+    orbit: Option<&'o Orbit>,
+) -> Result<&'o Orbit, SpanMessage> {
+    if frame != Some("local vertical") {
+        return Err((span, "a start is relative to space, or to the \"local vertical\"".to_owned()));
+    }
+    orbit
+        .ok_or_else(|| (span, "the local vertical is that of an orbit, and the file has no table `[orbit]`".to_owned()))
+}
+
+/// Attitude and angular velocity, body frame, in space, of those relative to the local vertical at the time zero.
+pub(crate) fn in_space(
+    orbit: &Orbit,
+    attitude: &Matrix3<f64>,
+    velocity: &Vector3<f64>,
+) -> (Matrix3<f64>, Vector3<f64>) {
+    let attitude = orbit.local_vertical(0.0) * attitude;
+    (attitude, velocity + attitude.tr_mul(&orbit.turning(0.0)))
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -32,6 +77,8 @@ enum Key {
     Velocity,
     /// Rates of the Euler angles.
     EulerRates,
+    /// The frame that attitude and velocity are relative to, instead of space.
+    RelativeTo,
 }
 
 /// An attitude, body to space.
@@ -97,6 +144,15 @@ const RATES: &str = "`euler_rates` need the attitude by `euler`";
 
 impl<'de> Deserialize<'de> for Start {
     fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        match FramedStart::deserialize(source)? {
+            FramedStart { own, frame: None } => Ok(own),
+            FramedStart { .. } => Err(Error::custom("a factor starts relative to space: leave `relative_to` out")),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for FramedStart {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
         source.deserialize_map(StartTable)
     }
 }
@@ -105,14 +161,14 @@ struct StartTable;
 
 /// Written by hand, so that conflicting keys are refused at their place.
 impl<'de> Visitor<'de> for StartTable {
-    type Value = Start;
+    type Value = FramedStart;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a table with an attitude and a velocity")
     }
 
-    fn visit_map<M: MapAccess<'de>>(self, mut table: M) -> Result<Start, M::Error> {
-        let (mut attitude, mut velocity) = (None, None);
+    fn visit_map<M: MapAccess<'de>>(self, mut table: M) -> Result<FramedStart, M::Error> {
+        let (mut attitude, mut velocity, mut frame) = (None, None, None);
         while let Some(key) = table.next_key()? {
             match (key, attitude, velocity) {
                 (Key::Euler | Key::Quaternion | Key::YawPitchRoll | Key::Rpy, Some(_), _) => {
@@ -130,6 +186,7 @@ impl<'de> Visitor<'de> for StartTable {
                     let angles = reversed(&table.next_value::<Triple<Angle>>()?.value);
                     attitude = Some(Attitude::by_yaw_pitch_roll(&angles));
                 }
+                (Key::RelativeTo, ..) => frame = Some(table.next_value()?),
                 (Key::Velocity, ..) => velocity = Some(Velocity::Body(table.next_value::<Triple<Rate>>()?.value)),
                 (Key::EulerRates, ..) => {
                     velocity = Some(Velocity::EulerRates(table.next_value::<Triple<Rate>>()?.value));
@@ -143,7 +200,7 @@ impl<'de> Visitor<'de> for StartTable {
         };
         // The axes of the body are those of space, or of the frame that the start is relative to.
         let attitude = attitude.map_or_else(UnitQuaternion::identity, |attitude| attitude.rotation());
-        Ok(Start { attitude, velocity })
+        Ok(FramedStart { own: Start { attitude, velocity }, frame })
     }
 }
 
