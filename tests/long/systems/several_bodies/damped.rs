@@ -71,7 +71,7 @@ fn a_chain_of_twenty_with_friction() {
 }
 
 #[test]
-#[ignore = "takes an hour: `cargo test --release -p liestep-long-tests --test systems chain_of_twenty -- --ignored`"]
+#[ignore = "takes ten minutes: `cargo test --release -p liestep-long-tests --test systems chain_of_twenty -- --ignored`"]
 fn a_chain_of_twenty_with_friction_for_a_million_steps() {
     assert_falls(1_000_000);
 }
