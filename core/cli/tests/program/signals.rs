@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use nalgebra::Vector3;
+
 use crate::called::{apart, folder, printed, refused, rows};
 
 const PULSE: &str = "{ times = [0, 0.7, 2.2], values = [[0, 0, 0], [0, 0, 2], [0, 0, 0]], between = \"steps\" }";
@@ -102,6 +104,85 @@ fn compositions_along_an_orbit_have_their_order() {
     let text = satellite(&format!("{GRADIENT}{one_sided}{ORBIT}"), 60, "method = { composition = \"Suzuki 4\" }");
     let told = refused(&folder, &text);
     assert!(told.contains("those with this `force` don't"), "{told}");
+}
+
+/// A free body whose moments change while it burns fuel moves by Euler's equations `μ' = μ × J(t)⁻¹ μ`, and keeps its momentum in
+/// space.
+#[test]
+fn moments_over_time_are_those_of_eulers_equations() {
+    let folder = folder("moments_over_time_are_those_of_eulers_equations");
+    let J = |t: f64| Vector3::new(2.0 - 0.3 * t, 2.5 - 0.3 * t, 1.4 + 0.1 * (2.0 * t).sin());
+    let rate = |t: f64, mu: &Vector3<f64>| mu.cross(&mu.component_div(&J(t)));
+    let (mut mu, h) = (Vector3::new(0.6, 2.0, 0.3).component_mul(&J(0.0)), 1e-3);
+    for step in 0..2000 {
+        let t = f64::from(step) * h;
+        let a = rate(t, &mu);
+        let b = rate(t + h / 2.0, &(mu + a * (h / 2.0)));
+        let c = rate(t + h / 2.0, &(mu + b * (h / 2.0)));
+        let d = rate(t + h, &(mu + c * h));
+        mu += (a + (b + c) * 2.0 + d) * (h / 6.0);
+    }
+    let expected = mu.component_div(&J(2.0));
+    let moments = "{ formula = \"[2 - 0.3 * t, 2.5 - 0.3 * t, 1.4 + 0.1 * sin(2 * t)]\" }";
+    let off = |kinetic: &str, method: &str, step: f64| {
+        let text = format!(
+            "title = \"Fuel burns\"\n[body]\nmoments = {moments}\nkinetic = \"{kinetic}\"\n[start]\n\
+             velocity = [0.6, 2, 0.3]\n[run]\nduration = 2\nstep = {step}\n{method}\n[output]\n\
+             columns = [\"velocity\", \"spatial-momentum\"]\n"
+        );
+        let rows = rows(&folder, &text);
+        let of = |row: &[f64], at: usize| Vector3::new(row[at], row[at + 1], row[at + 2]);
+        let [first, last] = [&rows[0], rows.last().unwrap()];
+        let lost = (of(last, 4) - of(first, 4)).norm();
+        assert!(lost < 1e-13, "{kinetic}: {lost:e}");
+        (of(last, 1) - expected).norm()
+    };
+    let composed = "method = { composition = \"Suzuki 4\" }";
+    for (kinetic, method, order) in
+        [("rigid", "", 2.0), ("cayley", "", 2.0), ("geodesic", "", 2.0), ("geodesic", composed, 4.0)]
+    {
+        let [coarse, fine] = [0.04, 0.02].map(|step| off(kinetic, method, step));
+        let found = (coarse / fine).log2();
+        println!("{kinetic} {method}: {coarse:e}, {fine:e}, of order {found}");
+        assert!(fine < 3e-3 && (found - order).abs() < 0.1, "{kinetic} {method}: {coarse:e}, {fine:e}");
+    }
+}
+
+/// Moments over time that don't change are those of a body, also beside a wheel, a law and effects that read the inertia.
+#[test]
+fn constant_moments_over_time_are_those_of_the_body() {
+    let folder = folder("constant_moments_over_time_are_those_of_the_body");
+    let text = |inertia: &str, terms: &str| {
+        format!(
+            "title = \"A satellite\"\n[body]\n{inertia}\n[start]\nvelocity = [0.1, -0.2, 0.3]\n[drag]\nc = 0.05\n\
+             [gravity_gradient]\ndirection = \"nadir\"\n[orbit]\nperiod = 60\nnormal = [0, 0, 1]\n[run]\nduration = 4\n\
+             step = 0.02\n[output]\ncolumns = [\"quaternion\", \"velocity\", \"energy\"]\n{terms}"
+        )
+    };
+    let devices = "[[wheel]]\naxis = [0, 0.6, 0.8]\ninertia = 0.02\nspeed = 30\ntorque = 0.01\n\
+                   [[control]]\ntorque = \"-0.1 * Omega\"\n";
+    let signal = "{ times = [0, 4], values = [[2, 2.5, 1.5], [2, 2.5, 1.5]], between = \"lines\" }";
+    for (constant, over_time) in [
+        ("moments = [2, 2.5, 1.5]", format!("moments = {signal}")),
+        ("J_d = [2, 2.5, 1.5]", format!("J_d = {signal}")),
+        ("moments.effective = [2, 2.5, 1.5]", format!("moments = {{ effective = {signal} }}")),
+    ] {
+        for terms in ["", devices] {
+            let [one, other] = [constant, over_time.as_str()].map(|inertia| rows(&folder, &text(inertia, terms)));
+            let apart = apart(&one, &other);
+            assert!(one.len() == 201 && apart < 1e-13, "{constant} {terms}: {apart:e}");
+        }
+    }
+    for (over_time, message) in [
+        (format!("J = {signal}"), "3:5: an inertia over time is that of principal `moments`, or of `J_d`"),
+        (
+            "moments = { times = [0, 4], values = [[2, 2.5, 1.5], [2, 2.5, 0.1]], between = \"lines\" }".to_owned(),
+            "3:11: `moments` of `body` can't be [2.0, 2.5, 0.1]",
+        ),
+    ] {
+        let found = refused(&folder, &text(&over_time, ""));
+        assert!(found.contains(message), "{found}");
+    }
 }
 
 #[test]

@@ -43,6 +43,23 @@ pub(crate) enum Kinetic {
     SixthOrder,
 }
 
+impl Body {
+    /// Sets principal moments by their key, as `moments` or `moments.effective`; returns whether a body has them.
+    pub(crate) fn put(&mut self, key: &str, numbers: &[f64]) -> bool {
+        let &[x, y, z] = numbers else { return false };
+        let (key, is_effective) = key.strip_suffix(".effective").map_or((key, false), |key| (key, true));
+        let mut value = Triple::ZERO;
+        value.value = Vector3::new(x, y, z);
+        let inertia = AnyInertia { value, is_effective };
+        let made = match key {
+            "moments" => Moments::try_from(inertia).map(|Moments { J, J_d }| (J, J_d)),
+            "J_d" => NonstandardMoments::try_from(inertia).map(|of| (of.inertia(), of.0)),
+            _ => return false,
+        };
+        made.map(|(J, J_d)| (self.J, self.mass) = (J, Distribution::Principal(J_d))).is_ok()
+    }
+}
+
 impl Kinetic {
     /// Order of the free body's step.
     pub(crate) fn order(self) -> u32 {
@@ -97,8 +114,8 @@ impl<'de> Visitor<'de> for BodyTable {
                     inertia = Some((J, Distribution::Principal(J_d)));
                 }
                 Key::Nonstandard => {
-                    let NonstandardMoments(J_d) = table.next_value()?;
-                    inertia = Some((NonstandardInertia::from(J_d).to_inertia(), Distribution::Principal(J_d)));
+                    let made: NonstandardMoments = table.next_value()?;
+                    inertia = Some((made.inertia(), Distribution::Principal(made.0)));
                 }
                 Key::Full => {
                     let InertiaRows(J) = table.next_value()?;
@@ -204,6 +221,13 @@ impl TryFrom<AnyInertia<Triple<quantity::Inertia>>> for Moments {
 #[derive(Deserialize)]
 #[serde(try_from = "AnyInertia<Triple<quantity::Inertia>>")]
 pub(crate) struct NonstandardMoments(pub(crate) DiagonalNonstandardInertia);
+
+impl NonstandardMoments {
+    /// The inertia of these.
+    pub(crate) fn inertia(&self) -> Inertia {
+        NonstandardInertia::from(self.0).to_inertia()
+    }
+}
 
 impl TryFrom<AnyInertia<Triple<quantity::Inertia>>> for NonstandardMoments {
     type Error = String;

@@ -74,8 +74,8 @@ pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverT
     let context = (path, orbit.as_ref());
     for (name, tables) in document.get_mut().iter_mut() {
         let name = name.get_ref().to_string();
-        let is_of_several = tables.get_ref().is_array() && OF_SEVERAL.contains(&name.as_str());
-        if !is_of_several && !OWN.contains(&name.as_str()) && !EFFECTS.iter().any(|effect| effect.key == name) {
+        let is_of_bodies = name == "body" || tables.get_ref().is_array() && OF_SEVERAL.contains(&name.as_str());
+        if !is_of_bodies && !OWN.contains(&name.as_str()) && !EFFECTS.iter().any(|effect| effect.key == name) {
             continue;
         }
         match tables.get_mut() {
@@ -95,8 +95,8 @@ pub(crate) fn take(document: &mut Document<'_>, path: &Path) -> Result<Vec<OverT
 
 /// Tables of a file's own declarations.
 const OWN: [&str; 4] = ["lagrangian", "hamiltonian", "force", "nonholonomic"];
-/// Tables of several bodies.
-const OF_SEVERAL: [&str; 3] = ["body", "joint", "spring"];
+/// Tables between several bodies.
+const OF_SEVERAL: [&str; 2] = ["joint", "spring"];
 
 /// Takes the parameters of a table by its name and its number among several; keys begin with the prefix.
 fn of_table(
@@ -128,6 +128,9 @@ fn of_table(
             continue;
         };
         let (key, span) = (format!("{prefix}{}", key.get_ref()), value.span());
+        if name == "body" && (key == "J" || key == "J.effective") {
+            return Err((span, "an inertia over time is that of principal `moments`, or of `J_d`".to_owned()));
+        }
         let over = OverTime { table: name.to_owned(), number, key, change, span: span.clone() };
         let first = over.stand_in();
         if !first.iter().all(|number| number.is_finite()) {

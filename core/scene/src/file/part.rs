@@ -3,7 +3,6 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use liestep::NonstandardInertia;
 use liestep::mechanics::Inertia;
 use nalgebra::{UnitQuaternion, Vector3};
 use serde::Deserialize;
@@ -160,7 +159,7 @@ impl BodyTable {
         let J = match (&self.moments, &self.J_d, &self.J, shape) {
             (Some(PrincipalMoments(J)), None, None, _) => *J,
             (None, None, Some(InertiaRows(J)), _) => Some(*J),
-            (None, Some(NonstandardMoments(J_d)), None, _) => Some(NonstandardInertia::from(*J_d).to_inertia()),
+            (None, Some(J_d), None, _) => Some(J_d.inertia()),
             (None, None, None, Some(shape)) => {
                 Some(Inertia::new(shape.inertia() * m).map_err(|error| error.to_string())?)
             }

@@ -247,6 +247,9 @@ impl SceneFile {
             "hamiltonian" => &mut self.hamiltonian,
             "force" => &mut self.force,
             "nonholonomic" => &mut self.nonholonomic,
+            "body" if self.system.is_none() => {
+                return self.body.as_mut().is_some_and(|body| body.put(&one.key, numbers));
+            }
             table => {
                 // The gradient of several bodies is a table of the file, as that of one.
                 let system = self.system.as_mut().filter(|_| table != "gravity_gradient").map(Arc::make_mut);

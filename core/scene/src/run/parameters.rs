@@ -9,22 +9,35 @@ use liestep_late::{Course, Declaration};
 
 use crate::file::control::locked;
 use crate::file::scene::SceneFile;
-use crate::run::data::{LibraryBody, Whole, numbers};
+use crate::run::data::{LibraryBody, Whole, inertia, numbers};
 use crate::run::mechanism::{BodyInput, Mechanism};
 
 /// The terms of a file, whose numbers are found at any time.
 pub(crate) struct Parameters {
     file: RefCell<SceneFile>,
-    /// The inertia without that of the wheels about their axes, and with wheels that are locked to the body.
+    /// The body, where its inertia doesn't change.
+    constant: Option<Inertial>,
+    sum: &'static Declaration,
+}
+
+/// A body's inertia without that of the wheels about their axes, and with wheels that are locked to the body; and the body.
+struct Inertial {
     inertias: [Inertia; 2],
     body: Option<LibraryBody>,
-    sum: &'static Declaration,
+}
+
+impl Inertial {
+    fn of(file: &SceneFile, J: Inertia) -> Self {
+        Self { inertias: [J, locked(&J, &file.wheel, 0)], body: LibraryBody::of(file, J) }
+    }
 }
 
 impl Parameters {
     pub(crate) fn of(file: SceneFile, J: Inertia, sum: &'static Declaration) -> Self {
-        let (inertias, body) = ([J, locked(&J, &file.wheel, 0)], LibraryBody::of(&file, J));
-        Self { file: RefCell::new(file), inertias, body, sum }
+        let has_kinetic = |table: &str| ["body", "lagrangian"].contains(&table);
+        let is_constant = !file.over_time.iter().any(|one| has_kinetic(&one.table));
+        let constant = is_constant.then(|| Inertial::of(&file, J));
+        Self { file: RefCell::new(file), constant, sum }
     }
 
     /// The numbers of a step of this start and length, s, or with the length zero of a time, with further spin and torque where
@@ -32,11 +45,15 @@ impl Parameters {
     fn numbers(&self, [start, length]: [f64; 2], held: &BodyInput) -> Option<Vec<f64>> {
         let mut file = self.file.borrow_mut();
         let is_known = file.set_over([start, length]);
+        let varied = match self.constant {
+            Some(_) => None,
+            None => Some(Inertial::of(&file, inertia(&file).ok()?)),
+        };
         let (rotor, torque) = (file.rotor, file.torque);
         file.rotor.iter_mut().for_each(|rotor| rotor.spin.value += held.spin);
         file.torque.iter_mut().for_each(|torque| torque.torque.value += held.torque);
-        let [J, locked] = &self.inertias;
-        let all = numbers(&file, [J, locked], self.body.as_ref(), start + length * 0.5);
+        let Inertial { inertias: [J, locked], body } = varied.as_ref().or(self.constant.as_ref())?;
+        let all = numbers(&file, [J, locked], body.as_ref(), start + length * 0.5);
         (file.rotor, file.torque) = (rotor, torque);
         self.sum.described(&all).ok().filter(|_| is_known)
     }
