@@ -361,8 +361,12 @@ fn mistakes_over_time_have_their_place() {
         assert!(found.contains(message) && found.contains("top.toml:22:"), "{motor}: {found}");
     }
     let pulse = pair("pin", &format!("torque = {PULSE}"));
-    let mass = pulse.replacen("m = 2", "m = { formula = \"2 + t\" }", 1);
-    assert!(refused(&folder, &mass).contains("`m` of `body` can't change with time"));
+    let mass = pulse.replacen("m = 2", "m = { formula = \"2 - t\" }", 1);
+    let told = refused(&folder, &mass);
+    assert!(told.contains("stopped at t = 2 s") && told.contains("value over time"), "{told}");
+    let point = "m = 2\nmoments = { times = [0, 4], values = [[0, 0, 0], [1, 1, 1]], between = \"steps\" }";
+    let told = refused(&folder, &pulse.replacen("m = 2\nmoments = [3, 3, 4]", point, 1));
+    assert!(told.contains("`moments` of `body` can't be [0.0, 0.0, 0.0]"), "{told}");
     let dipole = pulse.replacen("m = 2", "m = 2\ndipole = { moment = { formula = \"t\" }, field = [0, 0, 1] }", 1);
     assert!(refused(&folder, &dipole).contains("top.toml:5:"));
     // A formula without a value later on ends the run there.
@@ -445,5 +449,45 @@ fn bare_angles_are_said_to_be_in_rad() {
         let text = pair("pin", "damping = 1").replace("columns = [", "columns = [\"angle\", ") + &ensemble;
         let told = told(&text, "ensemble");
         assert_eq!(told.matches(note).count(), count, "{told}");
+    }
+}
+
+/// A mass that falls and grows, `d(m v)/dt = −m g` with `m = 1 + t/2`, and moments over time beside it, which are those of one body.
+#[test]
+fn masses_and_moments_change_with_time() {
+    let folder = folder("masses_and_moments_change_with_time");
+    let moments = "{ formula = \"[2 - 0.3 * t, 2.5 - 0.3 * t, 1.4 + 0.1 * sin(2 * t)]\" }";
+    let body = format!("moments = {moments}\nkinetic = \"geodesic\"\nstart.velocity = [0.6, 2, 0.3]\n");
+    let run = |step: f64| format!("[run]\nduration = 2\nstep = {step}\n[output]\nevery = 1\n");
+    let several = |step: f64| {
+        format!(
+            "title = \"Several\"\n[gravity]\ng = 9.81\nup = [0, 0, 1]\n[[body]]\nname = \"a\"\nm = {{ formula = \"1 + t / 2\" }}\n\
+             position = [0, 0, 0]\n{body}{}columns = [\"position\", \"velocity\"]\n",
+            run(step)
+        )
+    };
+    let one = |step: f64| {
+        let start = "[start]\nvelocity = [0.6, 2, 0.3]\n";
+        let body = format!("[body]\nmoments = {moments}\nkinetic = \"geodesic\"\n");
+        format!("title = \"One\"\n{body}{start}{}columns = [\"velocity\"]\n", run(step))
+    };
+    // The integral of −g (t + t²/4)/(1 + t/2), by Simpson's rule.
+    let speed = |t: f64| -9.81 * (t + t * t / 4.0) / (1.0 + t / 2.0);
+    let parts = (0..200).map(|k| f64::from(k) * 0.01);
+    let fallen: f64 = parts.map(|t| (speed(t) + 4.0 * speed(t + 0.005) + speed(t + 0.01)) / 600.0).sum();
+    let off = |step: f64| {
+        let [rows, alone] = [several(step), one(step)].map(|text| rows(&folder, &text));
+        let last = rows.last().unwrap();
+        let apart = (0..rows.len()).flat_map(|at| (0..3).map(move |k| (at, k)));
+        let apart = apart.map(|(at, k)| (rows[at][4 + k] - alone[at][1 + k]).abs()).fold(0.0, f64::max);
+        assert!(apart < 1e-11 && last[1] == 0.0, "{apart:e}");
+        (last[3] - fallen).abs()
+    };
+    let [coarse, fine] = [0.04, 0.02].map(off);
+    let order = (coarse / fine).log2();
+    assert!(fine < 1e-3 && (order - 2.0).abs() < 0.05, "{coarse:e}, {fine:e}, of order {order}");
+    for (formula, message) in [("t", "must be above zero"), ("[1, 1, 1]", "7:5: ")] {
+        let found = refused(&folder, &several(0.04).replace("1 + t / 2", formula));
+        assert!(found.contains(message), "{found}");
     }
 }

@@ -44,19 +44,24 @@ pub(crate) enum Kinetic {
 }
 
 impl Body {
-    /// Sets principal moments by their key, as `moments` or `moments.effective`; returns whether a body has them.
+    /// Sets principal moments by their key; returns whether a body has them.
     pub(crate) fn put(&mut self, key: &str, numbers: &[f64]) -> bool {
-        let &[x, y, z] = numbers else { return false };
-        let (key, is_effective) = key.strip_suffix(".effective").map_or((key, false), |key| (key, true));
-        let mut value = Triple::ZERO;
-        value.value = Vector3::new(x, y, z);
-        let inertia = AnyInertia { value, is_effective };
-        let made = match key {
-            "moments" => Moments::try_from(inertia).map(|Moments { J, J_d }| (J, J_d)),
-            "J_d" => NonstandardMoments::try_from(inertia).map(|of| (of.inertia(), of.0)),
-            _ => return false,
-        };
-        made.map(|(J, J_d)| (self.J, self.mass) = (J, Distribution::Principal(J_d))).is_ok()
+        let made = principal(key, numbers);
+        made.map(|(J, J_d)| (self.J, self.mass) = (J, Distribution::Principal(J_d))).is_some()
+    }
+}
+
+/// The inertia of principal moments by their key, as `moments` or `J_d.effective`; none that a body can't have.
+pub(crate) fn principal(key: &str, numbers: &[f64]) -> Option<(Inertia, DiagonalNonstandardInertia)> {
+    let &[x, y, z] = numbers else { return None };
+    let (key, is_effective) = key.strip_suffix(".effective").map_or((key, false), |key| (key, true));
+    let mut value = Triple::ZERO;
+    value.value = Vector3::new(x, y, z);
+    let inertia = AnyInertia { value, is_effective };
+    match key {
+        "moments" => Moments::try_from(inertia).ok().map(|Moments { J, J_d }| (J, J_d)),
+        "J_d" => NonstandardMoments::try_from(inertia).ok().map(|of| (of.inertia(), of.0)),
+        _ => None,
     }
 }
 

@@ -8,12 +8,13 @@ use nalgebra::{UnitQuaternion, Vector3};
 use serde::Deserialize;
 use toml::Spanned;
 
-use crate::file::body::{AnyInertia, INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments};
+use crate::file::body::{AnyInertia, INERTIA, InertiaRows, Kinetic, Moments, NonstandardMoments, principal};
 use crate::file::effects::{
     AirDragTable, DipoleTable, DragTable, EFFECTS, EffectEntry, MagneticDampingTable, RotorTable, Table, TorqueTable,
 };
 use crate::file::kepler::Orbit;
 use crate::file::mistake::SpanMessage;
+use crate::file::orbit::put;
 use crate::file::quantity::{self, Density, Length, Mass, PositiveScalar, Speed, Triple};
 use crate::file::shape::{BoxTable, RoundTable, Shape, SphereTable};
 use crate::file::start::{FramedStart, Start};
@@ -40,8 +41,26 @@ pub(crate) struct SystemBody {
 pub(crate) type BodyEffect = (&'static EffectEntry, Arc<dyn Table + Send + Sync>);
 
 impl SystemBody {
-    /// Sets a component of a parameter of an effect, by a key as `dipole.field`; returns whether it can have this number.
-    pub(crate) fn put(&mut self, key: &str, component: usize, number: f64) -> bool {
+    /// Sets the mass, the principal moments, or a parameter of an effect, by a key as `dipole.field`; returns whether it can have
+    /// these numbers. A point mass has no moments.
+    pub(crate) fn put(&mut self, key: &str, numbers: &[f64]) -> bool {
+        match (key, numbers) {
+            ("m", &[m]) => put(Some(&mut self.m), Some(m).filter(|m| *m > 0.0)),
+            ("m", _) => false,
+            _ if Self::is_inertial(key) => {
+                let of_body = self.J.as_mut();
+                of_body.is_some_and(|J| principal(key, numbers).map(|(now, _)| *J = now).is_some())
+            }
+            _ => numbers.iter().enumerate().all(|(at, &number)| self.put_effect(key, at, number)),
+        }
+    }
+
+    /// Whether a key is that of the mass or of principal moments.
+    pub(crate) fn is_inertial(key: &str) -> bool {
+        ["m", "moments", "J_d"].contains(&key.strip_suffix(".effective").unwrap_or(key))
+    }
+
+    fn put_effect(&mut self, key: &str, component: usize, number: f64) -> bool {
         let Some((effect, key)) = key.split_once('.') else { return false };
         let Some((_, table)) = self.effects.iter_mut().find(|(entry, _)| entry.key == effect) else { return false };
         if Arc::get_mut(table).is_none() {

@@ -255,7 +255,7 @@ impl SceneFile {
                 let system = self.system.as_mut().filter(|_| table != "gravity_gradient").map(Arc::make_mut);
                 if let Some(system) = system {
                     let place = (table, one.number, one.key.as_str());
-                    return numbers.iter().enumerate().all(|(at, &number)| system.put(place, at, number));
+                    return system.put(place, numbers);
                 }
                 return numbers.iter().enumerate().all(|(at, &number)| self.put([table, &one.key], at, number, ""));
             }

@@ -83,14 +83,15 @@ impl Spring {
 }
 
 impl System {
-    /// Sets a component of a value over time by its table, the number among several, and the key; returns whether it can have
-    /// this number.
-    pub(crate) fn put(&mut self, (table, at, key): (&str, usize, &str), component: usize, number: f64) -> bool {
+    /// Sets a value over time by its table, the number among several, and the key; returns whether it can have these numbers.
+    pub(crate) fn put(&mut self, (table, at, key): (&str, usize, &str), numbers: &[f64]) -> bool {
+        let Some(&number) = numbers.first() else { return false };
+        let is_one = numbers.len() == 1;
         match table {
-            "gravity" => put(self.gravity.as_mut().filter(|_| key == "g").map(|(g, _)| g), Some(number)),
-            "spring" => self.springs.get_mut(at).is_some_and(|spring| spring.of.put(key, number)),
-            "joint" => self.joints.get_mut(at).is_some_and(|joint| joint.of.put(key, number)),
-            _ => self.bodies.get_mut(at).is_some_and(|body| body.put(key, component, number)),
+            "gravity" => put(self.gravity.as_mut().filter(|_| key == "g" && is_one).map(|(g, _)| g), Some(number)),
+            "spring" => self.springs.get_mut(at).is_some_and(|spring| is_one && spring.of.put(key, number)),
+            "joint" => self.joints.get_mut(at).is_some_and(|joint| is_one && joint.of.put(key, number)),
+            _ => self.bodies.get_mut(at).is_some_and(|body| body.put(key, numbers)),
         }
     }
 

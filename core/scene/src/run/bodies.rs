@@ -272,7 +272,7 @@ fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) 
 pub(crate) struct Bodies {
     /// The file, whose values over time are those of the last step.
     file: RefCell<SceneFile>,
-    /// The bodies with joints and springs; none where these or gravity change with time.
+    /// The bodies with joints and springs; none where these, gravity or inertias change with time.
     parts: Option<Multibody>,
     /// The stepper at the time zero, whose joints are those of all.
     first: MultibodyStepper,
@@ -287,8 +287,10 @@ impl Bodies {
     /// The bodies of a file, with steps of `h`, s.
     pub(crate) fn new(file: &SceneFile, system: &Arc<System>, h: f64) -> Result<Self, SetupError> {
         let (first, _) = system.multibody(file, Scheme::Step, h)?;
-        let is_constant =
-            !file.over_time.iter().any(|one| ["joint", "spring", "gravity"].contains(&one.table.as_str()));
+        let is_constant = !file.over_time.iter().any(|one| match one.table.as_str() {
+            "body" => SystemBody::is_inertial(&one.key),
+            table => ["joint", "spring", "gravity"].contains(&table),
+        });
         let parts = is_constant.then(|| system.parts());
         Ok(Self { file: RefCell::new(file.clone()), parts, first, last: RefCell::default() })
     }

@@ -275,7 +275,7 @@ impl System {
         for one in file.over_time.iter().filter(|one| one.table == "spring" && one.key == "k") {
             let at = |look: u32| one.numbers([file.run.duration * f64::from(look) / f64::from(LOOKS), 0.0]);
             let largest = (0..=LOOKS).flat_map(at).fold(0.0, f64::max);
-            Arc::make_mut(&mut stiffest).put(("spring", one.number, "k"), 0, largest);
+            Arc::make_mut(&mut stiffest).put(("spring", one.number, "k"), &[largest]);
         }
         stiffest
     }
