@@ -58,7 +58,7 @@ def error(made: Generated, term: ls.Term, seed: int) -> float | None:
                 attitudes = [state.attitude] if len(g) == 1 else state.attitude
                 after = [factor.of_matrix(one) for factor, one in zip(made.factors, attitudes)]
                 found, g = max(found, apart(made, (g, after, h), (before, state.momentum))), after
-        except ls.StepError:
+        except (ls.SetupError, ls.StepError):
             found = None
         if found is not None and found < 1e-7:
             break
