@@ -486,6 +486,11 @@ fn masses_and_moments_change_with_time() {
     let [coarse, fine] = [0.04, 0.02].map(off);
     let order = (coarse / fine).log2();
     assert!(fine < 1e-3 && (order - 2.0).abs() < 0.05, "{coarse:e}, {fine:e}, of order {order}");
+    // A sphere of radius 1 m, whose inertia 2/5 m grows with its mass: it turns by the momentum at the start.
+    let sphere = several(0.02).replace(&format!("moments = {moments}"), "sphere.radius = 1");
+    let sphere = rows(&folder, &sphere);
+    let last = sphere.last().unwrap();
+    assert!([0.6, 2.0, 0.3].iter().zip(&last[4..]).all(|(of, found)| (of / 2.0 - found).abs() < 1e-13), "{last:?}");
     for (formula, message) in [("t", "must be above zero"), ("[1, 1, 1]", "7:5: ")] {
         let found = refused(&folder, &several(0.04).replace("1 + t / 2", formula));
         assert!(found.contains(message), "{found}");

@@ -45,7 +45,14 @@ impl SystemBody {
     /// these numbers. A point mass has no moments.
     pub(crate) fn put(&mut self, key: &str, numbers: &[f64]) -> bool {
         match (key, numbers) {
-            ("m", &[m]) => put(Some(&mut self.m), Some(m).filter(|m| *m > 0.0)),
+            ("m", &[m]) => {
+                // An inertia that is the shape's falls with the mass.
+                let of = |m: f64| self.shape.as_ref().map(|shape| shape.inertia() * m);
+                let is_of_shape = self.J.as_ref().map(|J| *J.as_matrix()) == of(self.m);
+                let now = of(m).filter(|_| is_of_shape).and_then(|J| Inertia::new(J).ok());
+                self.J = now.or(self.J);
+                put(Some(&mut self.m), Some(m).filter(|m| *m > 0.0))
+            }
             ("m", _) => false,
             _ if Self::is_inertial(key) => {
                 let of_body = self.J.as_mut();
