@@ -64,6 +64,18 @@ fn browser() -> Option<&'static str> {
         .find(|name| Command::new(name).arg("--version").output().is_ok_and(|output| output.status.success()))
 }
 
+/// Opens a page of a folder in a browser, and returns the text that it prints.
+fn shown(browser: &str, folder: &Path, name: &str, arguments: &[&str]) -> String {
+    let address = format!("file://{}/{name}", folder.canonicalize().unwrap().display());
+    let profile = format!("--user-data-dir={}", folder.join("profile").display());
+    let plain = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=3000"];
+    let mut command = Command::new(browser);
+    command.current_dir(folder).args(plain).args(["--window-size=1200,700"]).args(arguments).arg(profile).arg(address);
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
 /// The script runs to its end without an error, and the picture isn't empty.
 #[test]
 fn a_browser_shows_it() {
@@ -73,17 +85,7 @@ fn a_browser_shows_it() {
     };
     let folder = folder("browser");
     let page = page(&folder, "A heavy top with drag");
-    let shown = |name: &str, arguments: &[&str]| {
-        let address = format!("file://{}#t=1.5", folder.canonicalize().unwrap().join(name).display());
-        let profile = format!("--user-data-dir={}", folder.join("profile").display());
-        let plain =
-            ["--headless", "--no-sandbox", "--disable-gpu", "--window-size=1200,700", "--virtual-time-budget=3000"];
-        let mut command = Command::new(browser);
-        let output =
-            command.current_dir(&folder).args(plain).args(arguments).arg(profile).arg(address).output().unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        String::from_utf8(output.stdout).unwrap()
-    };
+    let shown = |name: &str, arguments: &[&str]| shown(browser, &folder, &format!("{name}#t=1.5"), arguments);
     let document = shown("top.html", &["--dump-dom"]);
     let root = document.lines().find(|line| line.contains("<html")).unwrap();
     assert!(root.contains("data-frames=\"201\"") && root.contains("data-charts=\"4\""), "{root}");
@@ -131,4 +133,52 @@ fn a_browser_shows_it() {
     let played = root.split_once("data-played=\"").unwrap().1.split_once(' ').unwrap().0;
     // The frame rate of a browser without a screen is unknown.
     assert!((0.01..1.5).contains(&played.parse::<f64>().unwrap()) && !root.contains("data-error"), "{root}");
+}
+
+/// A page fits a phone in both positions: nothing is wider than the screen, the time stands in one line, fingers have buttons of
+/// 44 pixels, and each chart has room for its labels. It starts by itself, and on a large screen it says its keys.
+#[test]
+fn it_fits_a_phone() {
+    let Some(browser) = browser() else {
+        println!("skipped: there is no Chromium here (Debian: apt-get install chromium)");
+        return;
+    };
+    let folder = folder("phone");
+    let script = r#"<script>setTimeout(() => {
+        const root = document.documentElement, all = list => [...document.querySelectorAll(list)].map(part => part.getBoundingClientRect());
+        const [clock] = all("output"), line = parseFloat(getComputedStyle(document.body).lineHeight);
+        parent.postMessage({
+            size: `${window.innerWidth},${window.innerHeight}`,
+            wide: root.scrollWidth <= window.innerWidth && all("footer *").every(box => box.right <= window.innerWidth),
+            clock: clock.height < 1.5 * line,
+            fingers: all("button, select, footer input").filter(box => box.width).every(box => box.height >= 44),
+            room: all(".chart").every(box => box.height >= 100),
+            keys: document.querySelector("footer p").offsetWidth > 0,
+            plays: document.querySelector("footer button").textContent,
+            error: root.dataset.error || "none",
+        }, "*");
+    }, 500);</script></body>"#;
+    let page = page(&folder, "A heavy top with drag").replace("</body>", script);
+    fs::write(folder.join("page.html"), page).unwrap();
+    let pointer = |kind| format!("--blink-settings=primaryPointerType={kind},availablePointerTypes={kind}");
+    for (width, height, is_phone) in [(360, 740, true), (740, 360, true), (1200, 700, false)] {
+        // The least window of a browser is wider than a phone, but not a frame in it.
+        let frame = format!(
+            "<script>onmessage = event => Object.assign(document.documentElement.dataset, event.data)</script>\
+             <iframe src=\"page.html\" style=\"border: 0; width: {width}px; height: {height}px\"></iframe>"
+        );
+        fs::write(folder.join("phone.html"), frame).unwrap();
+        let pointer = pointer(if is_phone { 2 } else { 4 });
+        let document = shown(browser, &folder, "phone.html", &["--dump-dom", &pointer, "--window-size=1400,1000"]);
+        let root = document.lines().find(|line| line.contains("<html")).unwrap();
+        let words = [("wide", true), ("clock", true), ("fingers", is_phone), ("room", true), ("keys", !is_phone)];
+        let words = words.map(|(word, value)| format!("data-{word}=\"{value}\""));
+        for word in words.into_iter().chain([
+            format!("data-size=\"{width},{height}\""),
+            "data-plays=\"Pause\"".to_owned(),
+            "data-error=\"none\"".to_owned(),
+        ]) {
+            assert!(root.contains(&word), "{word}: {root}");
+        }
+    }
 }

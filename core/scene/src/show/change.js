@@ -4,7 +4,7 @@
   const panel = document.createElement("details");
   document.querySelector("main").prepend(panel);
   const part = (kind, properties, place = panel) => place.appendChild(Object.assign(document.createElement(kind), properties));
-  panel.id = "values"; panel.open = window.innerWidth > 800;
+  panel.id = "values"; panel.open = window.innerWidth > 800 && window.innerHeight > 500;
   part("summary", { textContent: "Parameters and start" });
   const values = model.sliders.map(({ value }) => value);
   const short = x => String(Number(x.toPrecision(4))).replace("-", "−");

@@ -342,7 +342,7 @@ const charts = motion.charts.map(chart => {
     pen.strokeStyle = PATH; pen.lineWidth = 1.5; pen.beginPath(); pen.moveTo(across(now), TOP); pen.lineTo(across(now), TOP + deep); pen.stroke();
     pen.restore();
     pen.textAlign = "left"; pen.fillStyle = INK; pen.font = letters(12);
-    pen.fillText(title, LEFT, 12 * large);
+    pen.fillText(title, LEFT, 12 * large, width - LEFT);
     let x = LEFT + wide; pen.textAlign = "right";
     for (const [text, colour] of shownNow.reverse()) {
       pen.fillStyle = colour; pen.fillText(text, x, 12 * large + below); x -= pen.measureText(text).width + 12;
@@ -376,13 +376,14 @@ function zoom(from, to) {
 // Time.
 const controls = document.getElementById("controls");
 const element = (kind, properties) => controls.appendChild(Object.assign(document.createElement(kind), properties));
-const play = element("button", { textContent: "Play", title: "Space: play. L: large letters. V: a film of it all, which is saved." });
+const play = element("button", { textContent: "Play" });
 const slider = element("input", { type: "range", min: 0, max: 1, step: "any", value: 0, ariaLabel: "Time" });
 const clock = element("output", {});
 const speed = element("select", { ariaLabel: "Speed" });
 // A run lasts at most a minute, and a short one as long as it is.
 const usual = 2 ** Math.max(0, Math.ceil(Math.log2((end - start) / 60)));
 for (const factor of [0.1, 0.25, 0.5, 1, 2, 4, 10].map(x => x * usual)) speed.add(new Option(`${factor} ×`, factor, factor === usual, factor === usual));
+element("p", { textContent: "Space, ←, →: time · L: large letters · V: save a film" });
 let playing = false, before = 0;
 function seek(time) {
   now = Math.max(start, Math.min(end, time));
