@@ -318,6 +318,15 @@ def spread(places, gap, low, high):
     return moved
 
 
+def readable(color):
+    """A colour of the same hue, whose contrast with white is at least 4.5 (WCAG 2)."""
+    parts = [int(color[k : k + 2], 16) / 255 for k in (1, 3, 5)]
+    linear = [x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in parts]
+    factor = min(1.0, (1.05 / 4.5 - 0.05) / (0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]))
+    shown = [12.92 * x if x <= 0.0031308 else 1.055 * x ** (1 / 2.4) - 0.055 for x in (factor * x for x in linear)]
+    return "#" + "".join(f"{int(255 * x):02x}" for x in shown)
+
+
 def picture(results, path):
     import matplotlib
 
@@ -339,8 +348,8 @@ def picture(results, path):
              title="Steps of 1/240 s, ten radians a second")
     heights = spread([np.log10(y) for *_, y in lines], 0.72, -15.8, 4.2)
     for (title, color, x, y), height in zip(lines, heights):
-        left.annotate(title, (x, y), xytext=(2.2e6, 10**height), textcoords="data", color=color, fontsize=8, va="center",
-                      annotation_clip=False, arrowprops={"arrowstyle": "-", "lw": 0.4, "color": color, "alpha": 0.5})
+        left.annotate(title, (x, y), xytext=(2.2e6, 10**height), textcoords="data", color=readable(color), fontsize=8,
+                      va="center", annotation_clip=False, arrowprops={"arrowstyle": "-", "lw": 0.4, "color": color, "alpha": 0.5})
     for name, result in results.items():
         e, points = ENGINES[name], []
         if timed and not result["time"]:
