@@ -50,7 +50,42 @@ pub mod __private;
 
 pub use error::{SetupError, StepError};
 pub use groups::SO3;
-pub use liestep_macros::{constraint, force, lagrangian, nonholonomic};
+/// Derives an integrator from a reduced Lagrangian, continuous or discrete.
+///
+/// ```
+/// use liestep::nalgebra::{UnitQuaternion, Vector3};
+/// use liestep::{Inertia, SO3, Stepper, lagrangian};
+///
+/// /// A heavy top, by its kinetic and its potential energy.
+/// #[lagrangian(
+///     group = SO3,
+///     velocity = Omega,
+///     advected(w = up),
+///     l = 0.5 * Omega.dot(&(J * Omega)) - m * g * w.dot(&rho),
+///     discretise = trapezoid(Cayley),
+/// )]
+/// struct Top {
+///     J: Inertia,         // about the pivot, kg m²
+///     m: f64,             // kg
+///     g: f64,             // m/s²
+///     rho: Vector3<f64>,  // the centre of mass, body frame, m
+///     up: Vector3<f64>,   // the vertical, in space
+/// }
+///
+/// let J = Inertia::from_principal_moments(Vector3::new(3.0, 3.0, 4.0))?;
+/// let top = Top { J, m: 1.0, g: 9.81, rho: Vector3::z(), up: Vector3::z() };
+/// let stepper = Stepper::new(top, 0.01)?; // s
+/// let tilted = UnitQuaternion::from_scaled_axis(Vector3::new(0.5, 0.0, 0.0));
+/// let mut state = stepper.start(tilted, Vector3::new(0.0, 0.0, 6.0))?; // rad/s
+/// let energy = stepper.energy(&state);
+/// stepper.run(&mut state, 1000)?;
+/// assert!((stepper.energy(&state) - energy).abs() < 1e-2 * energy);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// The discrete Lagrangian itself is declared by `l_d = …` instead, as on the first page of this library.
+pub use liestep_macros::lagrangian;
+pub use liestep_macros::{constraint, force, nonholonomic};
 pub use mechanics::{Inertia, NonstandardInertia};
 pub use motion::{State, StateOf, Stepper};
 pub use nalgebra;

@@ -174,6 +174,30 @@ fn the_guide_and_readme_name_files_that_there_are() {
     assert!(named > 40, "{named} paths are named");
 }
 
+/// Tables on pages have a head: an empty one is displayed as an empty bar.
+#[test]
+fn tables_have_heads() {
+    let Some(root) = root() else { return };
+    let mut pages = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
+    for folder in ["core", "macros", "examples", "tests"] {
+        pages.extend(["md", "rs"].iter().flat_map(|extension| files(root, folder, extension)));
+    }
+    let mut tables = 0;
+    for page in pages {
+        let text = fs::read_to_string(root.join(&page)).unwrap();
+        let is_page = page.ends_with(".md");
+        let lines: Vec<&str> = text
+            .lines()
+            .map(|line| line.trim_start().trim_start_matches("///").trim_start_matches("//!").trim())
+            .collect();
+        for (number, pair) in lines.windows(2).enumerate().filter(|(_, pair)| pair[1].starts_with("|---")) {
+            assert!(pair[0].contains(char::is_alphabetic), "{page}:{}: a table without a head", number + 1);
+            tables += usize::from(is_page);
+        }
+    }
+    assert!(tables > 50, "{tables} tables are on pages");
+}
+
 #[test]
 fn every_chapter_is_listed_and_leads_on() {
     let chapters = chapters();

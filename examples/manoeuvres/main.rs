@@ -5,7 +5,7 @@
 //! cargo run --release -p liestep-examples --example manoeuvres -- slew sun           some
 //! ```
 //!
-//! | | |
+//! | task | subject |
 //! |---|---|
 //! | `slew` | the shortest half turn of a sphere with a bounded torque about each axis, and that about one axis |
 //! | `sun` | the least effort of a turn during which an instrument must not look into the sun |

@@ -5,29 +5,21 @@
 use liestep_derivation as derivation;
 use liestep_derivation::Role;
 
-/// Derives an integrator from a reduced Lagrangian, discrete or continuous: `impl Effect`, `impl DiscreteLagrangian`,
-/// `impl ContinuousLagrangian` and `impl Add` for the annotated struct.
+/// The attribute implements `Effect`, `DiscreteLagrangian`, `ContinuousLagrangian` and `Add` for the annotated struct.
 ///
-/// ```text
-/// #[lagrangian(
-///     group = SO3,                    the group that F belongs to
-///     generators = […],               its generators, by rows, if it is a group of your own; for one that
-///                                     `matrix_group!` declares, `group = Name!` finds them
-///     group(F = SO3, d = R3, …),      or the increments of two to four bodies; of a group of your own `Q = Name!`, or with
-///     generators(Name = […], …),      the generators of each such group
-///     advected(w = up, …),            w is the field `up`, moved by the group: w_i = g_i⁻¹ · up; may be left out
-///     given(u = torque, …),           u is the field `torque` unless a step has another value; may be left out
-///     l_d = …,                        the Lagrangian, an expression or a block with `let` bindings; or
-///     velocity = Omega, l = …,        the continuous one, in the components of the velocity; for several bodies
-///                                     `velocity(Omega_1, Omega_2)`
-///     discretise = trapezoid(Cayley), the discretisation of `l`; left out, there are the continuous equations alone
-///     pace = …,                       s(w) of a time `τ` in which steps are equal, `dt = s dτ`, with `given(E_0 = energy)`;
-///                                     for `Stepper::paced`; may be left out
-///     gradients,                      also the derivatives of a step, for `Stepper::linearised`; may be left out
-///     crate = path,                   the path of liestep, if not `::liestep`
-/// )]
-/// struct Name { … }                   the parameters
-/// ```
+/// | argument | meaning |
+/// |---|---|
+/// | `group = SO3` | the group that `F` belongs to; `Name!` is one that `matrix_group!` declares |
+/// | `generators = […]` | the generators, by rows, of a group of your own |
+/// | `group(F = SO3, d = R3, …)` | the increments of two to four factors; of a group of your own `Q = Name!`, or with `generators(Name = […], …)` |
+/// | `advected(w = up, …)` | `w` is the field `up`, moved by the group: `w_i = g_i⁻¹ · up`; may be left out |
+/// | `given(u = torque, …)` | `u` is the field `torque` unless a step has another value; may be left out |
+/// | `l_d = …` | the discrete Lagrangian, an expression or a block with `let` bindings |
+/// | `velocity = Omega, l = …` | instead of `l_d`: the continuous one, in the components of the velocity; for several bodies `velocity(Omega_1, Omega_2)` |
+/// | `discretise = trapezoid(Cayley)` | the discretisation of `l`; without it there are the continuous equations alone |
+/// | `pace = …` | `s(w)` of a time `τ` in which steps are equal, `dt = s dτ`, with `given(E_0 = energy)`; for `Stepper::paced`; may be left out |
+/// | `gradients` | also the derivatives of a step, for `Stepper::linearised`; may be left out |
+/// | `crate = path` | the path of liestep, if not `::liestep` |
 ///
 /// The expression may use `F` (the increment `g_i⁻¹ g_{i+1}`, a matrix), `I`, `h` (the step), the advected names and
 /// the fields. It is ordinary Rust over nalgebra, and becomes the method `l_d` unchanged: `+ - * /`, unary minus,

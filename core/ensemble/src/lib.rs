@@ -42,7 +42,7 @@
 //! Engine         assigns chunks to workers: threads here, shares of a job array, MPI
 //! ```
 //!
-//! | | |
+//! | to | use |
 //! |---|---|
 //! | draw members | [`Member`] |
 //! | read members from a table | [`Table`], [`Ensemble::over`] |

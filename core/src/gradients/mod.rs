@@ -1,6 +1,6 @@
 //! Derivatives of motions: the tangent map of a step, its transpose, and applications of both.
 //!
-//! | | |
+//! | derivative | item |
 //! |---|---|
 //! | the derivatives of the end of a motion by its start and by some parameters | [`Linearisation::step`] with a [`Tangent`] |
 //! | the state transition matrix | [`Tangent::transition`] |

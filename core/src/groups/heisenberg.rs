@@ -7,7 +7,7 @@ use super::matrix_group::MatrixGroup;
 
 /// The Heisenberg group of upper triangular matrices with ones on the diagonal.
 ///
-/// | | |
+/// | object | representation |
 /// |---|---|
 /// | matrix form | 3 × 3, `[1, a, c; 0, 1, b; 0, 0, 1]` |
 /// | tangent space | `(a', b', c')`; `E_1`, `E_2`, `E_3` have a one in the place of `a`, `b`, `c` |

@@ -8,7 +8,7 @@ use super::rigid::{self, rigid_group};
 
 /// The group SE(2) of rigid motions of the plane.
 ///
-/// | | |
+/// | object | representation |
 /// |---|---|
 /// | matrix form | 3 × 3, `[R, x; 0, 1]` |
 /// | tangent space | `(ω, v_1, v_2)`: angular velocity, then velocity, both in the body frame |

@@ -8,7 +8,7 @@ use super::rigid::{self, rigid_group};
 
 /// The group SE₂(3) of extended poses: an attitude, a velocity and a place.
 ///
-/// | | |
+/// | object | representation |
 /// |---|---|
 /// | matrix form | 5 × 5, `[R, v, x; 0, I]` |
 /// | tangent space | `(ω, a, u)`: the rates of `R`, of `v` and of `x`, all in the body frame |

@@ -8,7 +8,7 @@ use super::rigid::{self, rigid_group};
 
 /// The group SE(3) of rigid motions of space.
 ///
-/// | | |
+/// | object | representation |
 /// |---|---|
 /// | matrix form | 4 × 4, `[R, x; 0, 1]` |
 /// | tangent space | `(ω, v)`: angular velocity, then velocity, both in the body frame |

@@ -7,7 +7,7 @@ use super::matrix_group::MatrixGroup;
 
 /// The special linear group SL(2) of the plane.
 ///
-/// | | |
+/// | object | representation |
 /// |---|---|
 /// | matrix form | 2 × 2 |
 /// | tangent space | three components: stretch along the axes, stretch along the diagonals, rotation |

@@ -7,7 +7,7 @@ use super::matrix_group::MatrixGroup;
 
 /// The rotation group SO(2) of the plane.
 ///
-/// | | |
+/// | object | representation |
 /// |---|---|
 /// | matrix form | 2 × 2, `[cos θ, −sin θ; sin θ, cos θ]` |
 /// | tangent space | one component, the angular velocity; `E_1 = [0, −1; 1, 0]` |

@@ -7,7 +7,7 @@ use super::matrix_group::MatrixGroup;
 
 /// The group SU(2) of unit quaternions, as 4 × 4 matrices of left multiplication.
 ///
-/// | | |
+/// | object | representation |
 /// |---|---|
 /// | matrix form | 4 × 4, `L(q) p = q p` on the components `(w, x, y, z)`; its first column is `q` |
 /// | tangent space | three components, the body's angular velocity where `q` turns body to space |

@@ -14,7 +14,7 @@ pub type R2<T = f64> = MatrixGroup<TranslationGenerators, T, 3, 2>;
 
 /// The translations of space.
 ///
-/// | | |
+/// | object | representation |
 /// |---|---|
 /// | matrix form | 4 × 4 (for `Rⁿ` of size `n + 1`), `[I, x; 0, 1]` |
 /// | tangent space | the velocity; `E_k` has the `k`-th unit column in place of `x` |

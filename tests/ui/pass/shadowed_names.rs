@@ -49,10 +49,20 @@ struct Efficiency {
     up: ::nalgebra::Vector3<::core::primitive::f64>,
 }
 
+/// The names of the type parameters that an implementation adds.
+#[lagrangian(group = SO3, l_d = ((F - I) * inertia * (F - I).transpose()).trace() / (2.0 * h))]
+struct Other<Several: liestep::numbers::Real> {
+    inertia: liestep::NonstandardInertia<Several>,
+}
+
 pub fn main() {
     use ::nalgebra::Vector3;
     let inertia = liestep::NonstandardInertia::from_diagonal(Vector3::new(2.0, 2.0, 1.0)).unwrap();
     let stepper = Stepper::new(Top { inertia, rho: Vector3::z(), up: Vector3::z() }, 0.01).unwrap();
+    let mut state = stepper.start(SO3::identity(), Vector3::new(0.1, 0.0, 5.0)).unwrap();
+    stepper.step(&mut state).unwrap();
+    assert_eq!(state.steps(), 1);
+    let stepper = Stepper::new(Other { inertia } + Other { inertia }, 0.01).unwrap();
     let mut state = stepper.start(SO3::identity(), Vector3::new(0.1, 0.0, 5.0)).unwrap();
     stepper.step(&mut state).unwrap();
     assert_eq!(state.steps(), 1);

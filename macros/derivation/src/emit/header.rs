@@ -208,8 +208,7 @@ impl Header {
     pub(crate) fn addition(&self) -> TokenStream {
         let (span, private, group) = (Span::mixed_site(), &self.private, self.group());
         let core = quote_spanned!(span=> #private::core);
-        // A name that no type of the user's has.
-        let other = Ident::new("LiestepOtherTerm", span);
+        let other = self.free_name("Other");
         let bounds = [
             syn::parse_quote_spanned!(span=> #other: #private::Term),
             syn::parse_quote_spanned! {span=>
@@ -229,6 +228,21 @@ impl Header {
                 }
             }
         }
+    }
+
+    /// The name of one more type parameter of an implementation, which no type in its header has.
+    pub(super) fn free_name(&self, wanted: &str) -> Ident {
+        let (own, generics, bounds, groups) =
+            (&self.name, &self.generics, &self.generics.where_clause, &self.group_paths);
+        let taken = quote_spanned!(Span::mixed_site()=> #own #generics #bounds #(#groups)*).to_string();
+        let is_taken = |name: &str| {
+            taken.split(|letter: char| !letter.is_alphanumeric() && letter != '_').any(|word| word == name)
+        };
+        let mut name = wanted.to_owned();
+        while is_taken(&name) {
+            name.push('_');
+        }
+        Ident::new(&name, Span::mixed_site())
     }
 
     /// `impl … trait for …`, with one more type parameter if there is one.

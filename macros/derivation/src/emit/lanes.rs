@@ -57,8 +57,7 @@ pub(super) fn lanes(header: &Header, fields: Option<&[Field]>) -> TokenStream {
     let is_single = [header.generics.to_token_stream(), header.generics.where_clause.to_token_stream()]
         .into_iter()
         .any(|bounds| names(bounds, &["RealField", "ComplexField"]));
-    // A name that no type of the user's has.
-    let several = if is_single { scalar.clone() } else { Ident::new("LiestepLanes", span) };
+    let several = if is_single { scalar.clone() } else { header.free_name("Several") };
     let target = Struct {
         private: header.private.to_token_stream(),
         name: &header.name,
