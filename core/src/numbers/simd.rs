@@ -11,7 +11,8 @@ pub enum Vectors {
     AsCompiled,
     /// Up to four `f64`: AVX2.
     Four,
-    /// Up to eight `f64`: AVX-512, or AVX2 on a machine without it.
+    /// Up to eight `f64`: AVX-512, or AVX2 on a machine without it, and in a build with `--cfg liestep_256_bits`, which
+    /// measures on one machine what the other costs.
     Eight,
 }
 
@@ -69,7 +70,7 @@ pub(crate) fn dispatch<K: Kernel>(kernel: K) -> K::Output {
         return kernel.run();
     }
     #[cfg(target_arch = "x86_64")]
-    if const { matches!(K::VECTORS, Vectors::Four) } {
+    if const { matches!(K::VECTORS, Vectors::Four) || cfg!(liestep_256_bits) } {
         return match pulp::x86::V3::try_new() {
             Some(four) => Simd::vectorize(four, Dispatch(kernel)),
             None => kernel.run(),
