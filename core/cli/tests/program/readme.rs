@@ -36,7 +36,7 @@ fn it_is_short() {
 #[test]
 fn its_commands_are_run() {
     let (readme, checks) = (file("README.md"), file(".ci/run"));
-    for word in ["run", "check", "sweep", "ensemble", "import", "derive", "replay", "completions"] {
+    for word in ["run", "check", "sweep", "ensemble", "import", "derive", "fmu", "replay"] {
         assert!(
             readme.contains(&format!("`liestep {word} ")) && checks.contains(&format!("liestep {word} ")),
             "{word}"
