@@ -36,7 +36,7 @@ use question::Start;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scene, Vector};
-use crate::motion::{AnyStepper, GroupState, GroupStepper, Integrator as _, Stepper};
+use crate::motion::{AnyStepper, GroupState, GroupStepper, Stepper};
 use crate::with::{Method, Steppable};
 
 impl<S: Effect> Stepper<S> {
@@ -62,7 +62,6 @@ impl<S: Effect> Stepper<S> {
     /// use liestep::effects::RigidBody;
     /// use liestep::{NonstandardInertia, SO3, Stepper};
     /// use liestep::accuracy::Accuracy;
-    /// use liestep::motion::Integrator as _;
     /// use liestep::groups::LieGroup;
     /// use nalgebra::Vector3;
     ///

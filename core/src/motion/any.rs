@@ -27,7 +27,6 @@ use nalgebra::{Matrix3, Vector3};
 ///
 /// ```
 /// use liestep::effects::RigidBody;
-/// use liestep::motion::Integrator as _;
 /// use liestep::{NonstandardInertia, SO3, Stepper};
 /// use nalgebra::Vector3;
 ///
@@ -48,6 +47,8 @@ pub struct AnyStepper {
 }
 
 impl AnyStepper {
+    inherent_steps!();
+
     /// A stepper around this propagator.
     pub fn new(propagator: impl Propagator + 'static) -> Self {
         let layout = Rc::new(propagator.layout().clone());

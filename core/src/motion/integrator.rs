@@ -200,6 +200,66 @@ pub trait Integrator {
     }
 }
 
+/// The methods of an [`Integrator`] that most programs call, as methods of a type itself, which need no `use` of the trait.
+macro_rules! inherent_steps {
+    () => {
+        /// Makes one step; on an error the state is unchanged.
+        ///
+        /// # Errors
+        ///
+        /// The errors of [`Stepper::step`](crate::Stepper::step).
+        pub fn step(&self, state: &mut <Self as Integrator>::State) -> Result<StepReport, StepError> {
+            Integrator::step(self, state)
+        }
+
+        /// Makes `steps` steps; returns the sum of their iterations. On an error the state is unchanged.
+        ///
+        /// # Errors
+        ///
+        /// The errors of [`Stepper::run`](crate::Stepper::run).
+        pub fn run(&self, state: &mut <Self as Integrator>::State, steps: u64) -> Result<u64, StepError> {
+            Integrator::run(self, state, steps)
+        }
+
+        /// The motion at any time, s, as by [`Integrator::state_at`].
+        ///
+        /// # Errors
+        ///
+        /// The errors of [`Integrator::state_at`].
+        pub fn state_at(
+            &self,
+            state: &<Self as Integrator>::State,
+            time: f64,
+        ) -> Result<<Self as Integrator>::Motion, StepError> {
+            Integrator::state_at(self, state, time)
+        }
+
+        /// The step `h`, s; if steps vary, their unit.
+        #[must_use]
+        pub fn step_size(&self) -> f64 {
+            Integrator::step_size(self)
+        }
+
+        /// The time since the start, s.
+        #[must_use]
+        pub fn time(&self, state: &<Self as Integrator>::State) -> f64 {
+            Integrator::time(self, state)
+        }
+
+        /// The components of the body velocity, on SO(3) in rad/s; NaN if no velocity has this momentum.
+        #[must_use]
+        pub fn velocity(&self, motion: &<Self as Integrator>::Motion) -> <Self as Integrator>::Velocity {
+            Integrator::velocity(self, motion)
+        }
+
+        /// The energy, J; NaN if no velocity has this momentum.
+        #[must_use]
+        pub fn energy(&self, motion: &<Self as Integrator>::Motion) -> f64 {
+            Integrator::energy(self, motion)
+        }
+    };
+}
+
 /// Writes a row of a table, as [`Integrator::write`]; `numbers` has those of the attitude before.
 #[hot]
 pub(crate) fn write_row<G, A>(

@@ -19,6 +19,9 @@
 // The first module, because its page comes first in the documentation.
 mod stepper;
 
+#[macro_use]
+mod integrator;
+
 mod abreast;
 mod any;
 mod batch;
@@ -28,7 +31,6 @@ mod delegated;
 mod erasure;
 mod flows;
 mod increment;
-mod integrator;
 mod kept;
 mod limits;
 mod on_group;

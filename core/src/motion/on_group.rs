@@ -65,6 +65,8 @@ impl AnyStepper {
 }
 
 impl<G: LieGroup<Scalar = f64>, A: Advected<G>> GroupStepper<G, A> {
+    inherent_steps!();
+
     /// The stepper whose states are numbers.
     #[must_use]
     pub const fn any(&self) -> &AnyStepper {

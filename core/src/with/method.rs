@@ -188,7 +188,6 @@ pub enum UnknownMethod {
 ///
 /// ```
 /// use liestep::effects::RigidBody;
-/// use liestep::motion::Integrator as _;
 /// use liestep::with::Method;
 /// use liestep::{NonstandardInertia, SO3};
 /// use nalgebra::Vector3;
