@@ -3,7 +3,6 @@
 use std::time::Duration;
 
 use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper};
-use liestep::motion::Integrator as _;
 use liestep::{SO3, Stepper, mechanics};
 use liestep_refinement::Effort;
 use workbench::table::{aligned, number};

@@ -11,7 +11,7 @@ use liestep::mechanics::{
     ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular, Scene,
 };
 use liestep::methods::CompositionScheme;
-use liestep::motion::{Integrator as _, RightHandSide};
+use liestep::motion::RightHandSide;
 use liestep::with::Scheme;
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper, lagrangian};
 use nalgebra::{Matrix3, UnitQuaternion, Vector1, Vector2, Vector3, Vector6};

@@ -73,7 +73,8 @@ pub fn kept() -> usize {
 }
 
 impl Declaration {
-    /// Derives a struct with `#[lagrangian(…)]` or `#[force(…)]`, and proves the derivation.
+    /// Derives a struct with `#[lagrangian(…)]`, `#[force(…)]`, `#[nonholonomic(…)]` or `#[hamiltonian(…)]`, and checks the
+    /// derivation.
     ///
     /// # Errors
     ///

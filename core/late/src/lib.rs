@@ -2,7 +2,7 @@
 //!
 //! # Inside
 //!
-//! `{written → whole, certificate} → emitted → declaration`, `{compiled, latex} → declaration → sum → error` and `declaration → code →
+//! `certificate → written → {whole → declaration, emitted → declaration}`, `{compiled, latex} → declaration → sum → error` and `declaration → code →
 //! error`: a [`Declaration`] is the
 //! derivation of a text, with its stages as straight-line programs, or the `sum` of several. A [`Backend`] runs programs:
 //! [`Interpreter`] here, machine code in `liestep-machine`. `whole → declaration` makes the steps of any declaration on any

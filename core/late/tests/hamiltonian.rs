@@ -1,6 +1,6 @@
 //! Hamiltonians that are texts: a sub-Riemannian geodesic beside its closed form, two spins, and a body beside its Lagrangian.
 
-use liestep::motion::{AnyStepper, Integrator as _};
+use liestep::motion::AnyStepper;
 use liestep_late::{Declaration, Interpreter, stepper};
 
 const IDENTITY: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];

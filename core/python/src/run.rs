@@ -163,8 +163,8 @@ pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course)
     let made = if is_varied { observed.until(course.until) } else { observed.steps(steps) };
     let end = Moment::of_step(stepper, &state);
     let (steps, time) = (end.steps(), end.time());
-    // The last state is a row, too, unless only some times are requested.
-    let is_a_row = last.get() >= time;
+    // The last state is a row, too, unless only some times are requested. Steps may go back.
+    let is_a_row = (last.get() - time) * stepper.step_size().signum() >= 0.0;
     let written = if course.every > 0 && !is_a_row { row(&end) } else { Ok(()) };
     let written = written.and_then(|()| recorder.into_inner().finish().map(|_| ()));
     let finish = |table: RefCell<(Recorder<'_, AnyStepper, Columns>, Vec<bool>)>| {

@@ -98,6 +98,10 @@ def test_ends_of_runs(tmp_path):
     back = body.stepper(-0.1).run(velocity=[0.1, 0.2, 1], until=-4)
     again = body.stepper(0.1).run(attitude=back.matrix[-1], velocity=back.velocity[-1], until=4)
     assert back.steps == 40 and abs(again.momentum[-1] - back.momentum[0]).max() < 1e-13
+    # The end is a row in both directions, where `every` doesn't divide the number of steps.
+    for step in [0.1, -0.1]:
+        thinned = body.stepper(step).run(velocity=[0.1, 0.2, 1], until=40 * step, every=7)
+        assert len(thinned.time) == 7 and thinned.time[-1] == 40 * step
     assert body.stepper(0.1).run(velocity=[0, 0, 1], until=0.1 * 3).steps == 3
     by_times = body.stepper(0.1).run(velocity=[0, 0, 1], times=[0, 0.55])
     assert by_times.steps == 6 and by_times.time.tolist() == [0, 0.55]

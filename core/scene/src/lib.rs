@@ -1,8 +1,9 @@
-//! Scenes from files: `read → choose → run → picture, page, table`.
+//! Scenes from files. The rooms import each other in one direction: `{show → run, import} → file`.
 //!
 //! A file names a body, the effects on it, the start of the motion, the step or an accuracy, and what to draw and to
-//! record. A [`Scene`] is read from either of two kinds of files: [`SceneFile`] lists the keys of one body, or of a Lagrangian of
-//! the file's own, and [`System`] those of several bodies; the files in `examples/scenes` have examples. Numbers are in SI units, or texts with a unit: `"30 deg"`.
+//! record. A [`Scene`] is read from a [`SceneFile`], which lists the keys of one body or of a Lagrangian of the
+//! file's own; the tables of several bodies are its [`System`]. The folder `examples/scenes` has examples. Numbers are in SI
+//! units, or texts with a unit: `"30 deg"`.
 //! Mistakes in a file are reported with line and column, as a [`Mistake`].
 //!
 //! ```

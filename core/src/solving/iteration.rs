@@ -1,4 +1,4 @@
-//! Newton's iteration, for the lanes that haven't converged.
+//! Newton's iteration: its iterates, its end, and the solution. A single body is one lane.
 
 use crate::groups::{LieGroup, Retraction, SquareOf};
 use crate::mechanics::NewtonUpdate;

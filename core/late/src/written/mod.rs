@@ -1,9 +1,9 @@
 //! Programs as text: the straight-line code in Rust, and a whole step in other languages.
 //!
 //! A language is a table, of its straight-line code, and a head with a driver: Newton's iteration, its end, and the
-//! step that follows. Both have the decisions of the whole step by interpretation, in the same order.
+//! step that follows. All drivers have the decisions of the whole step by interpretation, in the same order.
 //!
-//! `{rust, c, javascript} → parts → language`.
+//! `javascript → c → parts → language`, `rust → language`.
 
 mod c;
 mod javascript;

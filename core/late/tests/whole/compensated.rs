@@ -7,7 +7,7 @@
 use liestep::groups::{LieGroup, SE2, SE3};
 use liestep::mechanics::{Effect, Regular};
 use liestep::methods::CompositionScheme;
-use liestep::motion::{Integrator as _, Plan};
+use liestep::motion::Plan;
 use liestep::numbers::Entries;
 use liestep::{SO3, Stepper, force, lagrangian};
 use liestep_late::{Declaration, Interpreter, numbers, stepper};

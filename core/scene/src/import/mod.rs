@@ -4,8 +4,8 @@
 //! one body, and the scene has its bodies placed by joints. Elements without a counterpart are listed, none is left out in
 //! silence.
 //!
-//! The files depend on each other in one direction: `{mjcf, sdf, urdf} → xml → robot → model → rigid`, and `parts` has the files that a
-//! model includes.
+//! The files depend on each other in one direction: `{mjcf, sdf, urdf} → {parts → xml → robot} → model → rigid`; `parts` has the
+//! files that a model includes.
 
 mod mjcf;
 mod model;

@@ -5,7 +5,7 @@ use std::rc::Rc;
 use liestep::SetupError;
 use liestep::accuracy::{Accuracy, Choice};
 use liestep::mechanics::Inertia;
-use liestep::motion::{AnyStepper, Integrator as _};
+use liestep::motion::AnyStepper;
 use liestep::with::{Clock, Method, Scheme};
 use liestep_late::{Course, Question, QuestionError, for_accuracy};
 

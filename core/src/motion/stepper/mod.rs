@@ -42,7 +42,7 @@ pub type StateOf<S, P = OwnStep<S>> = State<Group<S>, <S as Term>::Advected, <P 
 ///   that holds from machine to machine.
 /// - An inertia that depends on advected or prescribed parameters is checked only at the start of a motion: a
 ///   scene in which it can become degenerate has to check it itself.
-/// - Nothing is allocated, and no loop is unbounded.
+/// - Nothing is allocated, except with constraints on velocities and for an error; no loop is unbounded.
 ///
 /// # Examples
 ///

@@ -1,8 +1,8 @@
 //! The declaration: syntax, spans, and the tree of the declared expression.
 //!
 //! `parse` reads tokens, `check` assigns shapes, and `lower` hands an expression without spans to the mathematics.
-//! Every mistake that a user can make in a declaration is found here, reported at its token, and collected in
-//! [`errors::Errors`].
+//! Mistakes of syntax, names and shapes are found here, those of the mathematics in `judged`. Each is reported at its token,
+//! and collected in [`errors::Errors`].
 //!
 //! Deliberately not here: derived terms and generated code. The room knows `mathematics`, and nothing above itself.
 

@@ -1,4 +1,4 @@
-//! The cheaper reading: multiplied out, or with closed `let`s.
+//! The choice between two ways to derive a step: with each `let` written out, or kept as a variable of its own.
 //!
 //! Multiplied out, terms can cancel; with closed `let`s, nothing is computed twice. If there are `let`s, both readings
 //! are derived and their operations counted.

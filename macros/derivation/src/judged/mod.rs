@@ -6,7 +6,7 @@
 //! step is differentiated by, `constraint` the constraint between two bodies, `findings` the results of both, and
 //! `explain` reports the reason why nothing could be derived, at the tokens of the declaration.
 //!
-//! Deliberately not here: any derivation, which is mathematics, and any text of the generated documentation, which is
+//! Deliberately not here: derivations from `l_d`, which are mathematics, and any text of the generated documentation, which is
 //! emitted. The room knows `declared`, `program` and `mathematics`.
 
 mod choose;

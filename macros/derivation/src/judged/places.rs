@@ -1,4 +1,4 @@
-//! The numbers that a step is differentiated by: those of `describe`, each with its entry of a symbol.
+//! The parameters by which a step can be differentiated, in the order of `describe`.
 
 use std::collections::BTreeMap;
 

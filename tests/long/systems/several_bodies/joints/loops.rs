@@ -7,7 +7,7 @@ use declarations::motions::{matrix, number, read, vector};
 use liestep::groups::R3;
 use liestep::laws::samples::Random;
 use liestep::methods::Joint;
-use liestep::motion::{AnyStepper, Integrator as _, Propagator};
+use liestep::motion::{AnyStepper, Propagator};
 use liestep::{NonstandardInertia, SO3, SetupError, StepError};
 use nalgebra::{Vector3, Vector6};
 use serde_json::Value;
