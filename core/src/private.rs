@@ -33,8 +33,8 @@ pub use crate::methods::{Changes, Coefficients, Next};
 pub use crate::numbers::two_sum;
 
 // Constants of a step, in one place for steps that are programs.
-pub use crate::motion::declared::RATIO;
 pub use crate::motion::forced;
+pub use crate::motion::own_step::RATIO;
 pub use crate::motion::summation::{STEPS_BETWEEN_CHECKS, STEPS_BETWEEN_SEVERAL, TOLERATED};
 
 /// The limits of the solve for the velocity of a momentum.

@@ -1,4 +1,4 @@
-//! The error of a step without a solution: it names the largest solvable step, and the turn of the whole one.
+//! The right side of the momentum equation, and the error of a step without a solution: the largest solvable step, and the turn.
 
 use alloc::vec::Vec;
 

@@ -25,7 +25,7 @@ mod integrator;
 mod abreast;
 mod any;
 mod batch;
-pub(crate) mod declared;
+pub(crate) mod own_step;
 #[macro_use]
 mod delegated;
 mod erasure;
@@ -45,14 +45,14 @@ pub use crate::groups::layout::{Factor, FactorKind};
 pub use abreast::{Abreast, Joinable};
 pub use any::{AnyMotion, AnyState, AnyStepper};
 pub use batch::{Batch, Batchable};
-pub use declared::OwnStep;
-pub(crate) use declared::half_coordinates;
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
 pub use increment::Increment;
 pub(crate) use integrator::write_row;
 pub use integrator::{Answer, Integrator, Moment};
 pub use kept::Kept;
 pub use on_group::{GroupState, GroupStepper};
+pub use own_step::OwnStep;
+pub(crate) use own_step::half_coordinates;
 pub(crate) use plan::explained;
 pub use plan::{Cost, NextSteps, Plan, PlanFacts, Runs, Steerable, Variable};
 #[doc(hidden)]

@@ -1,4 +1,4 @@
-//! A method whose constants are folded for a scene and a step.
+//! A method of integration, with all constants computed that depend on the scene and the step alone.
 
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};

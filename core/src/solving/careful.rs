@@ -7,7 +7,8 @@ use core::marker::PhantomData;
 
 use super::constrained::{bordered, with_constraints};
 use super::iteration::{
-    Iteration, LONGEST_DAMPED, Lanes, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, Root, System, is_positive,
+    Iterates, Iteration, LONGEST_DAMPED, MAX_DAMPED_ITERATIONS, MAX_ITERATIONS, MOST_HALVINGS, Root, System,
+    is_positive,
 };
 use super::problem::{Problem, newton_system, step_terms};
 use crate::error::StepError;
@@ -113,7 +114,7 @@ struct CarefulSolve<'a, G: LieGroup, R> {
 impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
     /// Solves from this guess; if that fails, from the identity; if that fails, once more with shortened updates.
     fn solve(&self, guess: &G::Vector) -> Result<Root<G>, StepError> {
-        let (warm, iterations) = self.iterate(Lanes::starting_at(guess));
+        let (warm, iterations) = self.iterate(Iterates::starting_at(guess));
         let accepted = self.accepted(&warm);
         if accepted.all() {
             return Ok(warm.root::<R>(iterations));
@@ -134,7 +135,7 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
     /// Newton's iteration from one guess; a solution on another branch is an error. If the iterates leave the domain of
     /// the Lagrangian, it starts again with shortened updates.
     fn attempt(&self, guess: &G::Vector) -> Result<Root<G>, StepError> {
-        let (mut lanes, mut iterations) = self.iterate(Lanes::starting_at(guess));
+        let (mut lanes, mut iterations) = self.iterate(Iterates::starting_at(guess));
         if !lanes.half.is_finite() {
             let accepted = self.accepted(&lanes);
             (lanes, iterations) = self.iterate_damped(lanes.keeping(accepted, &G::Vector::zero()));
@@ -143,14 +144,14 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
     }
 
     /// Iterates until all lanes have converged, or the iterations are used up; returns their number.
-    fn iterate(&self, mut lanes: Lanes<G>) -> (Lanes<G>, u32) {
+    fn iterate(&self, mut lanes: Iterates<G>) -> (Iterates<G>, u32) {
         let made = lanes.iterate(MAX_ITERATIONS, |lanes| lanes.iterate_once::<true>(self.equation, self.safe));
         (lanes, made.unwrap_or(MAX_ITERATIONS))
     }
 
     /// Iterates as [`iterate`](Self::iterate) with no update longer than [`LONGEST_DAMPED`], and halves an update while
     /// it leaves the domain of the Lagrangian, such as velocities below that of light.
-    fn iterate_damped(&self, mut lanes: Lanes<G>) -> (Lanes<G>, u32) {
+    fn iterate_damped(&self, mut lanes: Iterates<G>) -> (Iterates<G>, u32) {
         let made = lanes.iterate(MAX_DAMPED_ITERATIONS, |lanes| {
             let (update, det) = self.update(&lanes.half);
             let length = update.dot(&update).simd_sqrt();
@@ -178,7 +179,7 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
     }
 
     /// The lanes that have converged on the branch of the identity.
-    fn accepted(&self, lanes: &Lanes<G>) -> Mask<G::Scalar> {
+    fn accepted(&self, lanes: &Iterates<G>) -> Mask<G::Scalar> {
         let candidates = lanes.settled & is_positive(lanes.det) & self.is_solved(&lanes.half);
         let near = R::is_half_near_identity(&lanes.half);
         if near.all() { candidates } else { candidates & (near | self.look_closer(&lanes.half)) }
@@ -205,7 +206,7 @@ impl<G: LieGroup, R: Retraction<G>> CarefulSolve<'_, G, R> {
     }
 
     /// The root if all lanes have one, otherwise the error of a lane without one.
-    fn conclude(&self, lanes: &Lanes<G>, iterations: u32) -> Result<Root<G>, StepError> {
+    fn conclude(&self, lanes: &Iterates<G>, iterations: u32) -> Result<Root<G>, StepError> {
         let accepted = self.accepted(lanes);
         if accepted.all() {
             return Ok(lanes.root::<R>(iterations));

@@ -66,7 +66,7 @@ impl<G: LieGroup> Root<G> {
 }
 
 /// The iterates of all lanes.
-pub(super) struct Lanes<G: LieGroup> {
+pub(super) struct Iterates<G: LieGroup> {
     pub(super) half: G::Vector,
     /// The determinant of the last Jacobian: at the iterate before `half`, or before two [short
     /// updates](super::reused_jacobian).
@@ -74,7 +74,7 @@ pub(super) struct Lanes<G: LieGroup> {
     pub(super) settled: Mask<G::Scalar>,
 }
 
-impl<G: LieGroup> Lanes<G> {
+impl<G: LieGroup> Iterates<G> {
     #[hot]
     pub(super) fn starting_at(half: &G::Vector) -> Self {
         Self { half: *half, det: real(0.0), settled: nowhere::<G::Scalar>() }

@@ -8,7 +8,7 @@
 
 use core::hint::black_box;
 
-use super::iteration::{Lanes, MAX_ITERATIONS, Root, System, settled};
+use super::iteration::{Iterates, MAX_ITERATIONS, Root, System, settled};
 use super::problem::{InlinedEquation, Problem};
 use super::reused_jacobian::{has_no_derivatives, has_sufficed, may_suffice};
 use crate::mechanics::{Effect, Group, Scalar, Vector};
@@ -48,13 +48,13 @@ impl<L: Effect> Problem<'_, L> {
                 // The iterates pass through memory. Otherwise the compiler mixes the code with masks into the code
                 // above, which takes half as long again.
                 let (half, det, settled) = black_box((half, made.det, settled));
-                started = Some(Lanes { half, det, settled });
+                started = Some(Iterates { half, det, settled });
             }
         }
         let (mut lanes, again) = if let Some(lanes) = started {
             (lanes, false)
         } else {
-            let (made, mut lanes) = (black_box(made), Lanes::starting_at(guess));
+            let (made, mut lanes) = (black_box(made), Iterates::starting_at(guess));
             lanes.advance(&made.update, made.det, &made.update);
             let again = lanes.reuse_jacobian::<REUSE>(equation, &made, self.safe);
             (lanes, again)

@@ -10,7 +10,7 @@
 //! [together](super::lanes), each with the bits of a scalar, except for the series of logarithms and exponentials,
 //! which all lanes share.
 
-use super::iteration::{Iteration, Lanes, MAX_ITERATIONS, Root, System, far, is_positive};
+use super::iteration::{Iterates, Iteration, MAX_ITERATIONS, Root, System, far, is_positive};
 use crate::groups::Retraction;
 use crate::mechanics::{Effect, Group, Scalar, Square, Vector, pattern};
 use crate::numbers::{Coordinates as _, Pattern};
@@ -67,7 +67,7 @@ impl<L: Effect> Problem<'_, L> {
         if const { Scalar::<L>::LANES > 1 } {
             return self.solve_together::<REUSE>(&equation, guess, largest);
         }
-        let mut lanes = Lanes::starting_at(guess);
+        let mut lanes = Iterates::starting_at(guess);
         let iterations = lanes.iterate(
             MAX_ITERATIONS,
             #[cfg_attr(not(debug_assertions), inline(always))]

@@ -20,7 +20,7 @@
 
 use core::any::TypeId;
 
-use super::iteration::{Iteration, Lanes, SETTLED, System};
+use super::iteration::{Iterates, Iteration, SETTLED, System};
 use crate::groups::LieGroup;
 use crate::numbers::{Coordinates as _, Mask, Real, real};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue};
@@ -54,7 +54,7 @@ pub(super) fn has_no_derivatives<T: Real>() -> bool {
 }
 
 #[hot]
-impl<G: LieGroup> Lanes<G> {
+impl<G: LieGroup> Iterates<G> {
     /// An iteration of the lanes that haven't converged. With `REUSE`, lanes that are near enough after it make one
     /// more with the same Jacobian. If steps are so long that they seldom are, the test costs more than it saves.
     /// Returns whether a lane has converged by the second update.

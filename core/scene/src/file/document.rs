@@ -21,7 +21,7 @@ use crate::file::mistake::{Lines, Mistake, SpanMessage};
 use crate::file::odds::{at_odds, of_ends};
 use crate::file::over_time::{self, OverTime};
 use crate::file::pointing::Pointing;
-use crate::file::scene::{Origin, Places, SceneFile};
+use crate::file::scene_file::{Origin, Places, SceneFile};
 use crate::file::schedule::{Pace, equal_steps};
 use crate::file::several::several;
 use crate::file::system::System;

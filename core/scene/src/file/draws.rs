@@ -12,7 +12,7 @@ use crate::file::effects::EFFECTS;
 use crate::file::histogram::{self, EndHistogram};
 use crate::file::mistake::{Mistake, SpanMessage};
 use crate::file::quantity::ratio;
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::file::tables::{Keys, dotted, ends, measured};
 
 /// The scenes of an ensemble. Each draws its values with the caller's random numbers.

@@ -12,9 +12,9 @@ use crate::file::control::{Motor, Wheel};
 use crate::file::document;
 use crate::file::draws::{Axis, Component, DRAW, LISTED, SceneEnsemble, Spread, parts};
 use crate::file::event::{Event, Quantity};
-use crate::file::kinds::Scene;
 use crate::file::mistake::{Mistake, SpanMessage, place_of};
-use crate::file::scene::SceneFile;
+use crate::file::scene::Scene;
+use crate::file::scene_file::SceneFile;
 use crate::file::tables::{Document, set, span};
 
 impl SceneEnsemble {

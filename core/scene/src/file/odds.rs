@@ -12,7 +12,7 @@ use crate::file::method::kind;
 use crate::file::mistake::SpanMessage;
 use crate::file::over_time::NO_ORBIT;
 use crate::file::picture::Curve;
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::file::schedule::Pace;
 use crate::file::tables::{Document, has, span};
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use toml::de::DeTable;
 
 use crate::file::document;
-use crate::file::kinds::Scene;
 use crate::file::mistake::{Lines, Mistake, SpanMessage};
+use crate::file::scene::Scene;
 use crate::file::tables::Document;
 use crate::file::text::text;
 use crate::file::{ensemble, sweep};

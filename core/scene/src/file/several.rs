@@ -22,7 +22,7 @@ use crate::file::picture::Picture;
 use crate::file::placed::place;
 use crate::file::pointing::Pointing;
 use crate::file::quantity::{Acceleration, Direction, Length, PositiveScalar, Scalar, Stiffness, Triple};
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::file::schedule::Schedule;
 use crate::file::system::{Spring, System, SystemPlaces};
 use crate::file::tables::Document;

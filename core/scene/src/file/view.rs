@@ -8,7 +8,7 @@ use crate::file::column::{Column, Names};
 use crate::file::control::{Wheel, entries};
 use crate::file::euler::roll_pitch_yaw;
 use crate::file::sample::{BodySample, Sample};
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 
 /// The names of roll, pitch and yaw.
 const LOCAL: [&str; 3] = ["roll", "pitch", "yaw"];

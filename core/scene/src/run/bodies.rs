@@ -23,7 +23,7 @@ use crate::file::joint::{Joint, Number};
 use crate::file::joint_kind::Kind;
 use crate::file::orbit::Time;
 use crate::file::part::{Between, SystemBody};
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::file::system::{Spring, System};
 use crate::run::mechanism::{BodyInput, Mechanism};
 use crate::run::nearest::BodyState;

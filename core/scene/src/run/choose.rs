@@ -12,13 +12,13 @@ use liestep_late::{Course, Question, QuestionError, for_accuracy};
 use crate::file::effects::{RotorTable, TorqueTable};
 use crate::file::lagrangian::Backend;
 use crate::file::quantity::Triple;
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::file::schedule::{Density, Pace};
 use crate::run::data::{Data, Whole, inertia, nothing, whole_error};
 use crate::run::devices::Devices;
 use crate::run::make::Stop;
-use crate::run::moving::MemberStart;
 use crate::run::parameters::{OneBody, Parameters};
+use crate::run::simulate::MemberStart;
 
 /// The step of a scene for members of an ensemble in lanes. `None` for another method, for varying steps, and for effects
 /// along orbits.

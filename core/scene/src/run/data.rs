@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 use crate::file::body::{Distribution, Kinetic};
 use crate::file::control::locked;
 use crate::file::lagrangian::Backend;
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::file::words::in_files;
 use crate::run::make::Stop;
 

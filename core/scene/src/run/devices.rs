@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use crate::file::control::{Control, Controller, Motor, Seen, Wheel, entries, fit, readings, stride};
 use crate::file::law::{Value, within};
 use crate::file::orbit::Time;
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::run::mechanism::{BodyInput, Mechanism};
 use crate::run::memory::Memory;
 

@@ -1,7 +1,7 @@
 //! The end of a run, as a row for the table of a sweep.
 
 use crate::file::column::Column;
-use crate::file::kinds::Scene;
+use crate::file::scene::Scene;
 use crate::run::make::Run;
 
 impl Scene {

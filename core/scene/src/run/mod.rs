@@ -2,7 +2,6 @@
 
 pub(crate) mod bodies;
 pub(crate) mod choose;
-pub(crate) mod course;
 pub(crate) mod data;
 pub(crate) mod devices;
 mod ends;
@@ -12,12 +11,13 @@ mod mechanism;
 mod memory;
 pub(crate) mod model;
 mod motors;
-pub(crate) mod moving;
 mod nearest;
 mod parameters;
+pub(crate) mod sample;
 pub(crate) mod scene;
 mod second;
-mod single;
+pub(crate) mod simulate;
+mod stepper;
 mod stiffness;
 mod swings;
 mod system;

@@ -6,7 +6,7 @@ use liestep_derivation::{ParameterKind, Role};
 use liestep_late::{Declaration, Whole, numbered};
 
 use crate::file::effects::EFFECTS;
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::file::schedule::Pace;
 use crate::run::data::{Data, inertia};
 

@@ -8,7 +8,7 @@ use liestep::{SetupError, StepError};
 use liestep_late::{Course, Declaration};
 
 use crate::file::control::locked;
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::run::data::{LibraryBody, Whole, inertia, numbers};
 use crate::run::mechanism::{BodyInput, Mechanism};
 

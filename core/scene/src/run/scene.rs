@@ -8,13 +8,13 @@ use nalgebra::Vector3;
 
 use crate::file::column::Column;
 use crate::file::control::{Wheel, entries};
-use crate::file::kinds::Scene;
 use crate::file::mistake::Mistake;
+use crate::file::scene::Scene;
 use crate::run::choose;
-use crate::run::course::sample;
 use crate::run::data::Whole;
 use crate::run::make::{Listeners, Run, Watch};
-use crate::run::moving::MemberStart;
+use crate::run::sample::sample;
+use crate::run::simulate::MemberStart;
 
 impl Scene {
     /// Simulates the scene.

@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use crate::file::kinds::Scene;
 use crate::file::quantity::round;
 use crate::file::sample::Sample;
+use crate::file::scene::Scene;
 use crate::file::schedule::Pace;
 use crate::run::make::{Listeners, Run, Stop};
 

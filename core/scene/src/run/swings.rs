@@ -6,7 +6,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::file::orbit::VectorInTime;
 use crate::file::quantity::{round, short};
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::run::make::{Note, Stop};
 use crate::run::stiffness::{NO_DIRECTION, UNSTABLE, coarse, has_no_direction, inverse_root, unstable};
 

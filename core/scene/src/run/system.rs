@@ -15,14 +15,14 @@ use crate::file::joint::{Joint, Limits};
 use crate::file::part::{Between, SystemBody};
 use crate::file::quantity::{round, short};
 use crate::file::sample::{BodySample, Sample};
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::file::system::System;
 use crate::run::bodies::Bodies;
 use crate::run::choose::{clock, shares};
 use crate::run::devices::Devices;
 use crate::run::make::{Note, Place, Run, Stop, Watch, fast_turn, told};
 use crate::run::motors::{ENTRIES, pose};
-use crate::run::moving::Begun;
+use crate::run::simulate::Begun;
 
 /// The quantity that violates a constraint, for messages.
 const GAP: &str = "lengths in m and cosines of axes together";

@@ -9,10 +9,10 @@ use liestep_plot::{
 };
 use nalgebra::Vector3;
 
-use crate::file::kinds::Scene;
 use crate::file::picture::{Curve, Picture, Plane, Trace};
 use crate::file::sample::{BodySample, Sample};
-use crate::file::scene::SceneFile;
+use crate::file::scene::Scene;
+use crate::file::scene_file::SceneFile;
 use crate::run::make::Run;
 
 /// Colours of bodies and of a vector's components, which further ones repeat.

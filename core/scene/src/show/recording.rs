@@ -6,12 +6,12 @@ use std::path::Path;
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
 use crate::file::column::Column;
-use crate::file::kinds::Scene;
 use crate::file::mistake::Mistake;
 use crate::file::part::SystemBody;
 use crate::file::quantity::short;
 use crate::file::sample::{BodySample, Sample};
-use crate::file::scene::SceneFile;
+use crate::file::scene::Scene;
+use crate::file::scene_file::SceneFile;
 use crate::file::system::System;
 use crate::run::make::{Happening, Run};
 use crate::run::model::Model;

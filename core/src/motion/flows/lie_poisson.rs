@@ -3,8 +3,8 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup as _;
 use crate::mechanics::{Effect, Group, Regular, Scalar, Vector};
-use crate::motion::declared::OwnStep;
 use crate::motion::increment::Increment;
+use crate::motion::own_step::OwnStep;
 use crate::motion::plan::Plan as _;
 use crate::motion::summation::Motion;
 use crate::numbers::real;

@@ -3,7 +3,7 @@
 use super::Stepper;
 use crate::error::SetupError;
 use crate::mechanics::{Effect, Regular, Scalar};
-use crate::motion::declared::OwnStep;
+use crate::motion::own_step::OwnStep;
 use crate::motion::plan::Plan;
 
 /// # Make

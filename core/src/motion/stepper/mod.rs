@@ -10,7 +10,7 @@ mod wrap;
 pub(crate) use start::check_attitude;
 
 use crate::mechanics::{Effect, Group, Term};
-use crate::motion::declared::OwnStep;
+use crate::motion::own_step::OwnStep;
 use crate::motion::plan::Plan;
 use crate::motion::state::State;
 

@@ -9,8 +9,8 @@ mod variables;
 
 use liestep_late::{c, prefix};
 
-use crate::file::kinds::Scene;
 use crate::file::mistake::Mistake;
+use crate::file::scene::Scene;
 use crate::run::make::Stop;
 use crate::run::model::Model;
 

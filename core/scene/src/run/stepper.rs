@@ -12,12 +12,12 @@ use crate::file::body::Kinetic;
 use crate::file::mistake::Mistake;
 use crate::file::quantity::{round, short};
 use crate::file::sample::Sample;
-use crate::file::scene::{Origin, SceneFile};
+use crate::file::scene_file::{Origin, SceneFile};
 use crate::file::system::System;
 use crate::run::choose;
-use crate::run::course::{sample, watch};
 use crate::run::make::{Note, Place, Run, Stop, Watch, fast_turn};
-use crate::run::moving::{Begun, Sampler};
+use crate::run::sample::{sample, watch};
+use crate::run::simulate::{Begun, Sampler};
 
 impl SceneFile {
     /// A note about a body that turns too far in a step of (3.13).

@@ -8,7 +8,7 @@ use liestep::motion::{AnyState, AnyStepper, Moment};
 use crate::file::column::Column;
 use crate::file::mistake::Mistake;
 use crate::file::sample::Sample;
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::file::schedule::Pace;
 use crate::run::make::{Course, Listeners, Note, Run, Stop, make};
 

@@ -10,10 +10,10 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::file::event::{Direction, Event, Quantity};
 use crate::file::sample::{BodySample, Sample};
-use crate::file::scene::SceneFile;
+use crate::file::scene_file::SceneFile;
 use crate::run::make::Watch;
 use crate::run::motors::ENTRIES;
-use crate::run::moving::Sampler;
+use crate::run::simulate::Sampler;
 use crate::run::system::of_bodies;
 
 /// The attitude of a body by its number, body to space.
