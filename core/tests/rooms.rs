@@ -185,7 +185,7 @@ fn tables_have_heads() {
     let mut tables = 0;
     for page in pages {
         let text = fs::read_to_string(root.join(&page)).unwrap();
-        let is_page = page.rsplit_once(".").is_some_and(|(_, extension)| extension == "md");
+        let is_page = page.rsplit_once('.').is_some_and(|(_, extension)| extension == "md");
         let lines: Vec<&str> = text
             .lines()
             .map(|line| line.trim_start().trim_start_matches("///").trim_start_matches("//!").trim())

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use clap::ArgMatches;
-use liestep::motion::{AnyStepper, Integrator as _};
+use liestep::motion::AnyStepper;
 use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
 use liestep_scene::{Column, EndHistogram, Mistake, Scene, SceneEnsemble, Spread, Watch, visible};
 

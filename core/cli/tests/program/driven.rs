@@ -1,7 +1,5 @@
 //! Laws, wheels, pointings and orbits of several bodies, against one body, an integration with `SciPy` and closed forms.
 
-use liestep::motion::Integrator as _;
-
 use crate::called::{folder, refused, rows};
 use crate::joints::system;
 

@@ -5,8 +5,6 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use std::{env, fs, process, thread};
 
-use liestep::motion::Integrator as _;
-
 use liestep_scene::{Mistake, Scene, SceneEnsemble, Spread};
 
 /// Marsaglia's xorshift.
