@@ -14,6 +14,8 @@ WORDS = [
     ("remove the field, or use it", "leave it out, or use it"),
     ("a field of the struct", "a parameter"),
     ("the struct has no field", "there is no parameter"),
+    ("give it the type `NonstandardInertia`", "give it a name that ends in `_d`"),
+    ("give it the type `Inertia`", "give it a name that doesn't end in `_d`"),
     (" of the struct", ""),
     ("write the word `gradients` into the declaration, of each term", "there are none in Python"),
     ("let `or_substeps` divide such steps", "let `substeps` divide such steps"),

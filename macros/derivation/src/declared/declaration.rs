@@ -319,8 +319,10 @@ pub enum FieldKind {
     Place(usize),
     /// A parameter that is prescribed for each step: a scalar, a vector or a matrix.
     Given(Shape),
-    /// `NonstandardInertia`, `Inertia`.
+    /// `NonstandardInertia`.
     SymmetricInertia,
+    /// `Inertia`.
+    StandardInertia,
     /// `DiagonalNonstandardInertia`.
     DiagonalInertia,
 }
@@ -347,6 +349,11 @@ impl FieldKind {
     }
 
     /// Whether a field of this kind can be prescribed for each step.
+    /// Whether the type promises a symmetric and positive matrix.
+    pub fn is_inertia(self) -> bool {
+        matches!(self, Self::SymmetricInertia | Self::StandardInertia | Self::DiagonalInertia)
+    }
+
     pub fn can_be_given(self) -> bool {
         matches!(self, Self::Scalar | Self::Vector(_) | Self::Matrix(_))
     }
@@ -358,7 +365,7 @@ impl FieldKind {
             Self::Vector(rows) | Self::Point(rows) | Self::Place(rows) => Shape::Matrix(rows, 1),
             Self::Advected(variance, rows) => Shape::Matrix(rows, if variance.is_tensor() { rows } else { 1 }),
             Self::Matrix(rows) | Self::Configuration(rows) => Shape::Matrix(rows, rows),
-            Self::SymmetricInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
+            Self::SymmetricInertia | Self::StandardInertia | Self::DiagonalInertia => Shape::Matrix(3, 3),
         }
     }
 }

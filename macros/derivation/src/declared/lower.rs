@@ -185,7 +185,7 @@ fn parameters(
             }
             FieldKind::Point(rows) => ((rows, 1), Structure::Point),
             FieldKind::Matrix(rows) | FieldKind::Configuration(rows) => ((rows, rows), Structure::General),
-            FieldKind::SymmetricInertia => ((3, 3), Structure::Symmetric),
+            FieldKind::SymmetricInertia | FieldKind::StandardInertia => ((3, 3), Structure::Symmetric),
             FieldKind::DiagonalInertia => ((3, 3), Structure::Diagonal),
         };
         let structure = weaker(Name::Field(index), structure);

@@ -115,7 +115,9 @@ impl Code<'_> {
             | FieldKind::Advected(..)
             | FieldKind::Given(_) => place(quote_spanned!(span=> self.#name)),
             FieldKind::Point(_) => place(quote_spanned!(span=> self.#name.coords)),
-            FieldKind::SymmetricInertia => place(quote_spanned!(span=> self.#name.as_matrix())),
+            FieldKind::SymmetricInertia | FieldKind::StandardInertia => {
+                place(quote_spanned!(span=> self.#name.as_matrix()))
+            }
             FieldKind::DiagonalInertia => {
                 let diagonal = Input { column: 0, ..input };
                 entry_at(span, &quote_spanned!(span=> self.#name.diagonal()), diagonal)

@@ -94,7 +94,7 @@ fn checked(
     let motion = Motion::new(declaration, Some(tree).filter(|_| chosen.is_none()), &names, &derived);
     // The check that each momentum has a velocity is for Lagrangians: a Hamiltonian has its velocity as a derivative.
     if chosen.is_none() && derived.has_kinetic() && declaration.role != Role::Hamiltonian {
-        explain::continuous_kinetic_part(&motion.kinetic_part(), declaration, errors)?;
+        explain::continuous_kinetic_part(&motion.kinetic_part(), declaration, tree, errors)?;
     }
     let sureness = motion.holds();
     let mut sureness =

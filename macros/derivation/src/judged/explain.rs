@@ -8,7 +8,7 @@ use proc_macro2::Span;
 use super::verify::{self, KineticPart, Objection, Row, TermMistake};
 use crate::declared::check;
 use crate::declared::errors::Errors;
-use crate::declared::{Coordinates, Declaration, Discretisation, Kind, Name, Quadrature, Role, Tree};
+use crate::declared::{Coordinates, Declaration, Discretisation, FieldKind, Kind, Name, Quadrature, Role, Tree};
 use crate::mathematics::chart::Chart;
 use crate::mathematics::derive::{ForceError, LimitError, Refusal};
 use crate::mathematics::group::Group;
@@ -165,9 +165,15 @@ fn explain_force(error: ForceError, declaration: &Declaration, errors: &mut Erro
 }
 
 /// Reports a kinetic part that no values of the parameters make regular at the identity.
-pub(super) fn kinetic_part(found: &KineticPart, declaration: &Declaration, errors: &mut Errors) -> Option<()> {
+pub(super) fn kinetic_part(
+    found: &KineticPart,
+    declaration: &Declaration,
+    tree: &Rc<Tree>,
+    errors: &mut Errors,
+) -> Option<()> {
     let message = match found {
         KineticPart::Regular => return Some(()),
+        KineticPart::OtherInertia(field) => return other_inertia(*field, declaration, tree, errors),
         // The inertia of a rotor between two bodies is added to their own, and one of all bodies is checked at the start.
         KineticPart::Singular(_) if is_of_two_bodies(declaration) => return Some(()),
         KineticPart::NotStationary(asymmetric) => not_stationary(asymmetric, declaration),
@@ -201,9 +207,11 @@ fn is_of_two_bodies(declaration: &Declaration) -> bool {
 pub(super) fn continuous_kinetic_part(
     found: &KineticPart,
     declaration: &Declaration,
+    tree: &Rc<Tree>,
     errors: &mut Errors,
 ) -> Option<()> {
     let message = match found {
+        KineticPart::OtherInertia(field) => return other_inertia(*field, declaration, tree, errors),
         KineticPart::Regular | KineticPart::NotStationary(_) => return Some(()),
         KineticPart::NotSmooth => {
             let (velocity, first) = (declaration.velocity_or_omega(0), declaration.group.factor(0));
@@ -222,6 +230,38 @@ pub(super) fn continuous_kinetic_part(
     };
     errors.push_over(declaration.expression.as_ref().map(check::value), message);
     None
+}
+
+/// Reports an inertia in the place of the nonstandard one, or the other way round, where the text has it first.
+fn other_inertia(index: usize, declaration: &Declaration, tree: &Rc<Tree>, errors: &mut Errors) -> Option<()> {
+    let field = declaration.fields.get(index)?;
+    let name = field.plain_name();
+    let message = if field.kind == FieldKind::StandardInertia {
+        format!(
+            "the kinetic energy is ½ Ω·(tr({name}) I − {name}) Ω, in which `{name}` is the nonstandard inertia ∫ x xᵀ dm: \
+             give it the type `NonstandardInertia`"
+        )
+    } else {
+        format!(
+            "the kinetic energy is ½ Ω·{name} Ω, in which `{name}` is the inertia itself, not the nonstandard one ∫ x xᵀ dm: \
+             give it the type `Inertia`"
+        )
+    };
+    let mut known = BTreeSet::new();
+    let place = first_use(tree, Name::Field(index), &mut known).unwrap_or(field.at);
+    errors.push(place, message);
+    None
+}
+
+/// The first place of a name in a text.
+fn first_use(tree: &Rc<Tree>, name: Name, known: &mut BTreeSet<*const Tree>) -> Option<Span> {
+    if !known.insert(Rc::as_ptr(tree)) {
+        return None;
+    }
+    match &tree.kind {
+        Kind::Name(own) if *own == name => Some(tree.span),
+        kind => kind.operands().into_iter().flatten().find_map(|operand| first_use(operand, name, known)),
+    }
 }
 
 /// The generators without kinetic energy; those of several bodies are numbered from one in each.

@@ -19,7 +19,7 @@ pub fn findings(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Choice, err
     let of = Subject { declaration, tree, lowered, derived };
     // A term without a kinetic part is a potential or a force, added to another term.
     if derived.limit.has_kinetic {
-        explain::kinetic_part(&verify::kinetic_part(of), declaration, errors)?;
+        explain::kinetic_part(&verify::kinetic_part(of), declaration, tree, errors)?;
     }
     let is_force = declaration.role == Role::Force;
     match verify::verify(of, kernel) {

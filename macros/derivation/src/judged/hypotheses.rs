@@ -59,7 +59,7 @@ pub(super) fn hypotheses(declaration: &Declaration, tree: &Rc<Tree>, chosen: &Ch
     }
     for (index, field) in declaration.fields.iter().enumerate() {
         let (name, field_name) = (Name::Field(index), field.plain_name());
-        let is_symmetric = matches!(field.kind, FieldKind::SymmetricInertia | FieldKind::DiagonalInertia);
+        let is_symmetric = field.kind.is_inertia();
         if is_symmetric && changes_equations(name, Structure::General) {
             used.push(format!("{field_name}ᵀ = {field_name}"));
         }

@@ -48,7 +48,7 @@ fn of_kind(kind: FieldKind, symbol: SymbolId, first: usize) -> impl Iterator<Ite
     let all = (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column)));
     all.filter(move |(row, column)| kind != FieldKind::DiagonalInertia || row == column).map(move |(row, column)| {
         let place = Place { number: first + row * columns + column, symbol, row, column, is_half: false };
-        if kind == FieldKind::SymmetricInertia {
+        if kind.is_inertia() && kind != FieldKind::DiagonalInertia {
             return Place { row: row.min(column), column: row.max(column), is_half: row != column, ..place };
         }
         place

@@ -89,7 +89,7 @@ impl Sources<'_> {
 pub(super) fn parameter_kind(kind: FieldKind) -> ParameterKind {
     match kind {
         FieldKind::Scalar => ParameterKind::Scalar,
-        FieldKind::SymmetricInertia => ParameterKind::Inertia,
+        FieldKind::SymmetricInertia | FieldKind::StandardInertia => ParameterKind::Inertia,
         FieldKind::DiagonalInertia => ParameterKind::DiagonalInertia,
         FieldKind::Point(rows) => ParameterKind::Vector(rows - 1),
         FieldKind::Matrix(rows) | FieldKind::Configuration(rows) => ParameterKind::Matrix(rows),

@@ -283,13 +283,17 @@ impl<'a> Motion<'a> {
         }
         let samples = (1..=u64::try_from(SAMPLES).unwrap_or(1)).map(|seed| self.hessian_at_rest(stream(seed)));
         let is_used = |name: Name| self.names.get(&name).is_some_and(|&id| self.derived.hessian.contains(id));
-        classified(self.declaration, &is_used, samples.collect(), &self.hessian_at_rest(Residue::stream(1)))
+        let samples: Vec<Value> = samples.map(|(hessian, _)| hessian).collect();
+        let (exact, point) = self.hessian_at_rest(Residue::stream(1));
+        classified(self.declaration, &is_used, samples, (&exact, &point))
     }
 
-    fn hessian_at_rest<T: Number>(&self, number: impl FnMut() -> T) -> Value<T> {
+    /// The second derivative at rest, and the values at which it is taken.
+    fn hessian_at_rest<T: Number>(&self, number: impl FnMut() -> T) -> (Value<T>, Values<T>) {
         let dimension = self.group().dimension();
         let point = self.stopped(self.point(number));
-        Value { rows: dimension, columns: dimension, entries: self.values(&self.hessian, &point) }
+        let entries = self.values(&self.hessian, &point);
+        (Value { rows: dimension, columns: dimension, entries }, point)
     }
 }
 

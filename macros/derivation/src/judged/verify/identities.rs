@@ -397,7 +397,7 @@ impl<'a> Identities<'a> {
                 let (rows, columns) = shape(kind);
                 let any = Value { rows, columns, entries: (0..rows * columns).map(|_| number()).collect() };
                 let change = match kind {
-                    FieldKind::SymmetricInertia => any.plus(&any.transpose()),
+                    FieldKind::SymmetricInertia | FieldKind::StandardInertia => any.plus(&any.transpose()),
                     FieldKind::DiagonalInertia => Value::diagonal(rows, |k| any.at(k, k)),
                     _ => any,
                 };

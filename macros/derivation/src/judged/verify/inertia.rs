@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use super::degree::Content;
 use super::number::Number;
 use super::residue::Residue;
-use super::{Element, SAMPLES, Sample, Subject, Value, evaluated, linear};
-use crate::declared::{Declaration, FieldKind, Name};
+use super::{Element, SAMPLES, Sample, Subject, Value, Values, evaluated, linear};
+use crate::declared::{Declaration, Field, FieldKind, Name};
 use crate::mathematics::symbolic::Rational;
 use crate::program::{Graph, NodeId, components, square};
 
@@ -24,6 +24,8 @@ pub enum KineticPart {
     NotSmooth,
     /// `J` is negative at all sample values.
     Negative,
+    /// `J` of a rotation is this field, whose type is that of the nonstandard inertia, or the other way round.
+    OtherInertia(usize),
 }
 
 /// The kinetic part by its first and second derivatives at several values of the parameters.
@@ -53,7 +55,7 @@ pub fn kinetic_part(of: Subject) -> KineticPart {
     let inertias = samples.iter().map(|sample| at_identity(sample, &graph, &inertia));
     let inertias = inertias.map(|entries| Value { rows: dimension, columns: dimension, entries });
     let is_used = |name: Name| lowered.names.get(&name).is_some_and(|&id| derived.limit.inertia.contains(id));
-    classified(declaration, &is_used, inertias.collect(), &exact)
+    classified(declaration, &is_used, inertias.collect(), (&exact, &sample.values))
 }
 
 /// The kinetic part by its second derivative in the field, and by its sign at sample values. `is_used` selects the
@@ -62,7 +64,7 @@ pub(super) fn classified(
     declaration: &Declaration,
     is_used: &dyn Fn(Name) -> bool,
     samples: Vec<Value>,
-    exact: &Value<Residue>,
+    (exact, values): (&Value<Residue>, &Values<Residue>),
 ) -> KineticPart {
     let is_finite = |inertia: &Value| inertia.entries.iter().all(|entry| entry.is_finite());
     let samples: Vec<Value> = samples.into_iter().filter(is_finite).collect();
@@ -70,12 +72,39 @@ pub(super) fn classified(
         KineticPart::NotSmooth
     } else if has_a_sign(declaration, is_used) && samples.iter().all(|j| is_positive(&j.map(|x| -x))) {
         KineticPart::Negative
+    } else if let Some(field) = other_inertia(declaration, exact, values) {
+        KineticPart::OtherInertia(field)
     } else if linear::is_regular(&exact.entries, exact.rows) {
         KineticPart::Regular
     } else {
         let is_idle = |&k: &usize| (0..exact.rows).all(|j| exact.at(k, j).is_zero() && exact.at(j, k).is_zero());
         KineticPart::Singular((0..exact.rows).filter(is_idle).collect())
     }
+}
+
+/// The field whose type has the other inertia than that of a rotation: the kinetic energy of a `NonstandardInertia` `J_d` is
+/// `½ Ω·(tr(J_d) I − J_d) Ω`, that of an `Inertia` `J` is `½ Ω·J Ω`.
+fn other_inertia(declaration: &Declaration, exact: &Value<Residue>, values: &Values<Residue>) -> Option<usize> {
+    let mut first = 0;
+    for factor in declaration.group.factors() {
+        let start = first;
+        first += factor.dimension();
+        if !factor.is_so3 {
+            continue;
+        }
+        let block = Value::new(3, 3, |i, j| exact.at(start + i, start + j));
+        let is_other = |(at, field): (usize, &Field)| {
+            let value = values.get(&Name::Field(at)).filter(|_| field.kind.is_inertia())?;
+            let trace = (0..3).map(|k| value.at(k, k)).fold(Residue::ZERO, |sum, entry| sum + entry);
+            let spread = Value::diagonal(3, |_| trace).zip(value, |x, y| x - y);
+            let other = if field.kind == FieldKind::StandardInertia { &spread } else { value };
+            other.zip(&block, |x, y| x - y).entries.iter().all(|entry| entry.is_zero()).then_some(at)
+        };
+        if let Some(field) = declaration.fields.iter().enumerate().find_map(is_other) {
+            return Some(field);
+        }
+    }
+    None
 }
 
 /// Whether the kinetic part depends on one field alone, whose type promises a positive matrix, or on none.
@@ -85,10 +114,7 @@ fn has_a_sign(declaration: &Declaration, is_used: &dyn Fn(Name) -> bool) -> bool
     match used.as_slice() {
         _ if is_advected => false,
         [] => true,
-        [one] => declaration
-            .fields
-            .get(*one)
-            .is_some_and(|field| matches!(field.kind, FieldKind::SymmetricInertia | FieldKind::DiagonalInertia)),
+        [one] => declaration.fields.get(*one).is_some_and(|field| field.kind.is_inertia()),
         _ => false,
     }
 }

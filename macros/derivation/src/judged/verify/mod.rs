@@ -285,7 +285,7 @@ fn parameter<T: Number>(kind: FieldKind, number: &mut impl FnMut() -> T) -> Valu
     let any = Value::new(rows, columns, |_, _| two * number() - T::ONE);
     match kind {
         FieldKind::Point(_) => Value::new(rows, 1, |row, _| if row + 1 < rows { any.at(row, 0) } else { T::ONE }),
-        FieldKind::SymmetricInertia => any.times(&any.transpose()),
+        FieldKind::SymmetricInertia | FieldKind::StandardInertia => any.times(&any.transpose()),
         FieldKind::DiagonalInertia => Value::diagonal(rows, |row| T::ONE + any.at(row, row)),
         // The Cayley transform of a skew matrix of three rows is a rotation.
         FieldKind::Configuration(_) => {
