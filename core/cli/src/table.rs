@@ -30,8 +30,10 @@ pub(crate) fn printed(head: &[&str], rows: &[Vec<String>], file: &str) -> String
     let mut text = line(&mut head.iter().copied());
     text.extend(shown.iter().map(|row| line(&mut row.iter().map(String::as_str))));
     let (more_rows, more_columns) = (rows.len() - shown.len(), head.len() - columns);
-    if more_rows + more_columns > 0 {
-        let _ = writeln!(text, "  {more_rows} more rows and {more_columns} more columns are in {file}");
+    let more = [(more_rows, "rows"), (more_columns, "columns")].into_iter().filter(|(count, _)| *count > 0);
+    let more: Vec<_> = more.map(|(count, what)| format!("{count} more {what}")).collect();
+    if !more.is_empty() {
+        let _ = writeln!(text, "  {} are in {file}", more.join(" and "));
     }
     text
 }

@@ -118,10 +118,10 @@ impl<E: Effect + ?Sized> Limit<E> {
 ///
 /// \[RDAE\], section 2.2; see [`conventions`](crate::conventions).
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` isn't an effect, so it can't be in a scene",
+    message = "`{Self}` has no steps, as it isn't an effect",
     label = "not an effect",
-    note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums",
     note = "a continuous Lagrangian `l = …` is one with `discretise = trapezoid(Cayley)` or another, which makes its steps",
+    note = "effects are structs with `#[lagrangian(…)]`, those in `liestep::effects`, and their sums",
     note = "joints are added to a system of bodies: `liestep::methods::Multibody`"
 )]
 #[hot]

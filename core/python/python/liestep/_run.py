@@ -11,7 +11,7 @@ from . import _arrays, _native
 from ._gradient import Differentiable
 from ._state import State
 from ._tables import written
-from .errors import ColumnError, SceneError, SetupError
+from .errors import ColumnError, Error, SceneError, SetupError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -264,10 +264,13 @@ class Run(Motion, Differentiable):
 
         ``run.plot().savefig("run.png")`` saves it.
         """
-        import matplotlib.pyplot as plt
         import numpy as np
 
         if axes is None:
+            try:
+                import matplotlib.pyplot as plt
+            except ImportError as error:
+                raise Error("a plot takes matplotlib, which isn't installed: `pip install matplotlib`, or write `run.svg()`") from error
             _, axes = plt.subplots(2, 1, sharex=True, constrained_layout=True)
         axes[0].plot(self.time, self.velocity, label=[name for name in self._names if name.startswith("velocity_")])
         axes[0].set(ylabel="velocity", title=self.title)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -301,6 +302,9 @@ def lagrangian(
     (101, 13)
     """
     if (l_d is None) == (l is None) or (l is None) != (discretise is None):
+        for name in parameters:
+            if alike := difflib.get_close_matches(name, ["discretise"], n=1, cutoff=0.6):
+                raise DeclarationError(f"`{name}` isn't known here; did you mean `{alike[0]}`?")
         raise DeclarationError("a Lagrangian has `l_d`, or `l` with `discretise`, as in `discretise=\"trapezoid(Cayley)\"`")
     numbers = {name: _value(name, value) for name, value in parameters.items()}
     head = "l_d"

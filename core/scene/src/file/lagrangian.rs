@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use liestep::motion::Propagator as _;
-use liestep_derivation::Role;
+use liestep_derivation::{Role, suggestion};
 use liestep_late::{Declaration, LateError, Whole};
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Deserializer};
@@ -156,6 +156,18 @@ impl<'t, 'a> Text<'t, 'a> {
         }
     }
 
+    /// The message about a Lagrangian without its text, at a misspelt `discretise` if there is one.
+    fn incomplete(&self) -> SpanMessage {
+        let misspelt = self.table.keys().find_map(|key| {
+            let advice = suggestion(key.get_ref(), ["discretise"]);
+            (!advice.is_empty() && key.get_ref() != "discretise").then(|| (key.span(), advice))
+        });
+        misspelt.map_or_else(
+            || (self.span.clone(), KEYS.to_owned()),
+            |(span, advice)| (span, format!("unknown key{advice}")),
+        )
+    }
+
     /// Adds `key(a, b)` for the names of a product's factors, and `key = a` for one.
     fn read_names(&mut self, key: &str, default: Option<&str>) -> Result<(), SpanMessage> {
         let (names, at) = match self.table.get(key) {
@@ -202,7 +214,7 @@ impl<'t, 'a> Text<'t, 'a> {
                     self.line(&format!("discretise = {discretise},"), at);
                     ("l", l)
                 }
-                _ => return Err((self.span.clone(), KEYS.to_owned())),
+                _ => return Err(self.incomplete()),
             }
         };
         self.line(&format!("{key} ="), at.clone());
