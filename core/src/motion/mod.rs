@@ -63,7 +63,7 @@ pub use state::ElapsedTime;
 pub use state::State;
 pub(crate) use stepper::check_attitude;
 pub use stepper::{StateOf, Stepper};
-pub use summation::{Motion, Summation, SumsOf};
+pub use summation::{Motion, Summation};
 pub(crate) use summation::{MotionOf, STEPS_BETWEEN_CHECKS, TOLERATED, is_due, restored};
 
 pub use crate::solving::{Guess, Solvability, WarmStart};

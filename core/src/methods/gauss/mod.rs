@@ -21,7 +21,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor, constant_inertia};
 use crate::methods::splitting::torque;
-use crate::motion::{Cost, Motion, OwnStep, Plan, PlanFacts, Runs, Stepper, Summation, SumsOf, Variable};
+use crate::motion::{Cost, Motion, OwnStep, Plan, PlanFacts, Runs, Stepper, Summation, Variable};
 use crate::numbers::{Vectors, two_sum};
 use nalgebra::Vector3;
 
@@ -185,7 +185,13 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
     /// Attitude and momentum are computed from the quaternion only after the last step. The step fails with
     /// [`StepError::NotConverged`] if it is too long for the iteration.
     #[inline(always)]
-    fn run<M: SumsOf<S>>(&self, _: &S, motion: &mut M, kept: &mut Self::Kept, steps: u64) -> Result<u64, StepError> {
+    fn run<M: Summation<SO3, S::Advected>>(
+        &self,
+        _: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        steps: u64,
+    ) -> Result<u64, StepError> {
         let mut iterations = 0;
         for _ in 0..steps {
             iterations += u64::from(self.advance(kept)?);
