@@ -15,7 +15,7 @@ pub use settling::{Changes, Next};
 pub use state::CollocationMemory;
 
 use lift::{Lift, PhasePoint, length_squared};
-use stages::{Stages, WeightedRates};
+use stages::Stages;
 
 use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
@@ -138,9 +138,9 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
         let CollocationMemory { lifted: y, carry, stages } = &*kept;
         let mut stages = match stages {
             Some(stages) => stages.continued(&self.coefficients),
-            None => Stages::constant(y, self),
+            None => Stages::constant(y, (&self.lift, &self.weights)),
         };
-        let iterations = stages.solve(&self.coefficients, (y, carry), self)?;
+        let iterations = stages.solve(&self.coefficients, (y, carry), (&self.lift, &self.weights))?;
         let (next, left) = compensated(y, &stages.change(), carry);
         if !next.iter().all(|component| component.is_finite()) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -232,13 +232,6 @@ const OF_A_SUM: f64 = 5.0;
 /// Operations of a step besides its iterations, and those per pair of pairs in the initial guess.
 const OF_AN_UPDATE: f64 = 33.0;
 const OF_A_GUESS: f64 = 21.0;
-
-impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> WeightedRates for Gauss<S, PAIRS> {
-    #[inline(always)]
-    fn weighted_rate(&self, stage: usize, place: &PhasePoint) -> PhasePoint {
-        self.lift.weighted_rate(place, self.weights.as_flattened()[stage])
-    }
-}
 
 /// The rounded sum `y + (change + carry)`, and its rounding error.
 ///
