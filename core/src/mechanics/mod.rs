@@ -44,7 +44,7 @@ pub use operations::Operations;
 pub(crate) use second_derivatives::PointOf;
 pub use second_derivatives::{SecondDerivatives, StepDerivatives, StepPoint};
 pub use sum::{SharedBy, Sum};
-pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
+pub use symmetry::{LeftInvariant, OneVector};
 pub use systems::{
     Along, At, Between, Coupling, Each, Neighbours, On, Pairs, Placement, Places, SeenBetween, WhereAllAre,
 };
