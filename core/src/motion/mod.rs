@@ -40,7 +40,7 @@ mod state;
 pub(crate) mod summation;
 
 pub use crate::groups::layout::{Factor, FactorKind};
-pub use abreast::{Abreast, Joinable};
+pub use abreast::{Abreast, Together};
 pub use any::{AnyMotion, AnyState, AnyStepper};
 pub use batch::{Batch, Batchable};
 pub use declared::OwnStep;
