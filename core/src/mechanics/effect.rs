@@ -253,19 +253,15 @@ pub trait Effect: Term {
         Self::newton_system(constants, terms, half).0
     }
 
-    /// Visits the [constraints on velocities](crate::mechanics::Nonholonomic) at an increment: each with its value and its
-    /// slope.
+    /// Visits the [constraints on velocities](crate::mechanics::Nonholonomic): at an increment of a step each with its value and
+    /// its slope, at rest with zero and the covector of its reaction.
     fn constrained(
         &self,
-        _: &Matrix<Self>,
+        _at: Option<(&Matrix<Self>, Self::Scalar)>,
         _: &Self::Advected,
-        _h: Self::Scalar,
         _each: &mut dyn FnMut(Self::Scalar, Vector<Self>),
     ) {
     }
-
-    /// Visits the covectors of the reactions of the [constraints on velocities](crate::mechanics::Nonholonomic).
-    fn reactions(&self, _: &Self::Advected, _each: &mut dyn FnMut(Vector<Self>)) {}
 
     /// `Ad*_F` of the part of the diamond that depends on `F`, as a function of the new `w⁺`; `increment` is `F − I`.
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self>;

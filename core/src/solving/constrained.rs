@@ -32,7 +32,7 @@ fn scale<L: Effect>(problem: &Problem<'_, L>) -> Scalar<L> {
 
 fn rows<L: Effect>(problem: &Problem<'_, L>, f: &Matrix<L>) -> Rows<L> {
     let mut rows = Vec::new();
-    problem.scene.constrained(f, problem.w, problem.h, &mut |value, slope| rows.push((value, slope)));
+    problem.scene.constrained(Some((f, problem.h)), problem.w, &mut |value, slope| rows.push((value, slope)));
     rows
 }
 
