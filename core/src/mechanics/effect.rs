@@ -166,11 +166,6 @@ pub trait Effect: Term {
     /// products with zeros. If the limit is `½ ξ·Jξ + s·ξ − V`, this is [`Limit::quadratic`].
     fn limit(&self, velocity: Option<&Vector<Self>>, w: &Self::Advected) -> Limit<Self>;
 
-    /// The matrix `J(w)` of the [limit](Self::limit) at rest; for a single body it is the same for all `w`.
-    fn inertia(&self, w: &Self::Advected) -> Square<Self> {
-        self.limit(None, w).hessian
-    }
-
     /// The advected and prescribed parameters with another energy `E_0`, J, and the previous `E_0`; `None` if no `pace`
     /// was declared.
     ///

@@ -6,7 +6,7 @@ mod reactions;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
-    Effect, Group, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, pattern,
+    Effect, Group, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, inertia, pattern,
 };
 use crate::motion::increment::Increment;
 use crate::motion::limits::kicked;
@@ -52,7 +52,7 @@ impl<S: Effect> OwnStep<S> {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
         if scene.facts().has_constant_inertia {
-            check_inertia::<Group<S>>(&scene.inertia(&scene.advected()))?;
+            check_inertia::<Group<S>>(&inertia(scene, &scene.advected()))?;
         }
         let constants = scene.constants(h);
         if h != real(0.0) && !S::are_finite(&constants) && !S::are_finite(&scene.constants(real(1.0))) {
@@ -210,7 +210,7 @@ impl<S: Effect> OwnStep<S> {
             } else if scene.facts().has_constant_inertia {
                 self.safe
             } else {
-                safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>()).1)
+                safe(Vector::<S>::factorise_with(&inertia(scene, w), pattern::<S>()).1)
             },
         }
     }
