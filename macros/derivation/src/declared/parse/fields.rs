@@ -70,14 +70,13 @@ pub fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
         "Matrix2" | "Matrix3" | "Matrix4" | "Matrix5" | "Matrix6" => FieldKind::Matrix(digit(&name)?),
         "SVector" => FieldKind::Vector(length(ty)?),
         "SMatrix" => FieldKind::Matrix(length(ty)?),
-        "ContravariantVector" => FieldKind::Advected(Variance::Vector, length(ty)?),
-        "ContravariantTensor" => FieldKind::Advected(Variance::Contravariant, length(ty)?),
-        "CovariantTensor" => FieldKind::Advected(Variance::Covariant, length(ty)?),
-        "MixedTensor" => FieldKind::Advected(Variance::Mixed, length(ty)?),
         "NonstandardInertia" | "Inertia" => FieldKind::SymmetricInertia,
         "DiagonalNonstandardInertia" => FieldKind::DiagonalInertia,
         _ if item.generics.type_params().any(|parameter| parameter.ident == name) => FieldKind::Scalar,
-        _ => return None,
+        _ => {
+            let (_, variance) = Variance::TYPES.into_iter().find(|(own, _)| *own == name)?;
+            FieldKind::Advected(variance, length(ty)?)
+        }
     })
 }
 
