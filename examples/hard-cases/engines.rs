@@ -4,7 +4,7 @@
 //! normalised, so they differ only in the gyroscopic term.
 
 use liestep::effects::PrincipalBody;
-use liestep::mechanics::{Effect as _, Term as _, inertia};
+use liestep::mechanics::{Term as _, inertia};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use workbench::run::{EarlyEnd, Method, Sample};
 

@@ -1,6 +1,6 @@
 //! The symmetric top in Euler angles, \[RDAE, section 3.1\]: a rival with a singularity where the axis is vertical.
 
-use liestep::mechanics::{Effect as _, Term as _, inertia};
+use liestep::mechanics::{Term as _, inertia};
 use nalgebra::{Matrix3, Rotation3, Vector3, Vector6};
 
 use super::declaration::HeavyTop;

@@ -4,7 +4,7 @@
 //! the origin of the equations: those in quaternions are written by hand, the others derived.
 
 use liestep::SO3;
-use liestep::mechanics::{Effect as _, Term as _, inertia};
+use liestep::mechanics::{Term as _, inertia};
 use liestep::motion::RightHandSide;
 use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3};
 

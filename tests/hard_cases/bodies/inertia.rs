@@ -2,7 +2,7 @@
 
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop};
-use liestep::mechanics::{DiagonalNonstandardInertia, Effect as _, Inertia, InertiaError, inertia};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError, inertia};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
