@@ -35,7 +35,7 @@ pub(super) fn implementation(
     let text = text_of(declaration, emitter.lowered, d, findings);
     let (derivation, declared_text) = (super::derivation(header, &text), declared_text(header, declaration, arguments));
     let item = page::documented(item, &format!("# Derived constraint\n\n```text\n{text}```\n"));
-    let (core, own) = (quote_spanned!(span=> #private::core), quote_spanned!(span=> #private::Nonholonomic));
+    let core = quote_spanned!(span=> #private::core);
     let nothing = quote_spanned!(span=> ());
     let types = header.types("WithoutKinetic", &nothing, &nothing);
     let [of_constraint, of_effect] = ["Nonholonomic", "Effect"].map(|name| header.implementation(name));
@@ -79,15 +79,16 @@ pub(super) fn implementation(
             }
             fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { #zero }
             fn constrained(
-                &self,
-                at: #core::option::Option<(&#matrix, #scalar)>,
-                w: &Self::Advected,
+                &self, at: #core::option::Option<(&#matrix, #scalar)>, w: &Self::Advected,
                 each: &mut dyn #core::ops::FnMut(#scalar, #vector),
             ) {
-                match at {
-                    #core::option::Option::Some((f, h)) => each(#own::at_increment(self, f, w, h), #own::slope(self, f, w, h)),
-                    #core::option::Option::None => each(#private::real::<#scalar>(0.0), #own::reaction(self, w)),
-                }
+                let (value, covector) = match at {
+                    #core::option::Option::Some((f, h)) => (
+                        #private::Nonholonomic::at_increment(self, f, w, h), #private::Nonholonomic::slope(self, f, w, h),
+                    ),
+                    #core::option::Option::None => { (#private::real::<#scalar>(0.0), #private::Nonholonomic::reaction(self, w)) }
+                };
+                each(value, covector);
             }
         }
 
