@@ -1,6 +1,6 @@
 //! Declarations inside `macro_rules!`, with parts from the definition and from the call.
 
-use liestep::mechanics::{DiscreteLagrangian as _, Effect as _, Term as _, inertia};
+use liestep::mechanics::{DiscreteLagrangian as _, Term as _};
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -192,7 +192,7 @@ macro_rules! is_times {
             (liestep::mechanics::inertia(&body, &body.advected()) - inertia).norm() < 1e-10,
             "inertia of {}: {}",
             stringify!($name),
-            inertia(&body, &body.advected())
+            liestep::mechanics::inertia(&body, &body.advected())
         );
     }};
 }
