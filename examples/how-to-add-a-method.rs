@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::LieGroup as _;
-use liestep::mechanics::{DiscreteLagrangian, Operations, SceneVisitor};
+use liestep::mechanics::{DiscreteLagrangian, Operations, SceneVisitor, inertia};
 use liestep::methods::CompositionScheme;
 use liestep::motion::{Cost, Motion, Plan, Remedy, StepReport, Summation};
 use liestep::nalgebra::{Matrix3, UnitQuaternion, Vector3};
@@ -37,7 +37,7 @@ impl<S: DiscreteLagrangian> Compensable for Verlet<S> {}
 
 impl<S: DiscreteLagrangian<Scalar = f64, Group = SO3>> Verlet<S> {
     fn new(scene: &S, h: f64) -> Result<Self, SetupError> {
-        let (inertia, moments) = (scene.inertia(&scene.advected()), scene.inertia(&scene.advected()).diagonal());
+        let (inertia, moments) = (inertia(scene, &scene.advected()), inertia(scene, &scene.advected()).diagonal());
         if inertia != Matrix3::from_diagonal(&moments) {
             return Err(SetupError::Parameter { field: "J_d", cause: "is not diagonal" });
         }

@@ -8,7 +8,7 @@ use std::error::Error;
 
 use liestep::effects::{Gravity, RigidBody};
 use liestep::groups::CayleyRetraction;
-use liestep::mechanics::{DiscreteLagrangian, Effect, Facts, Limit, Parts, SceneVisitor, Term, WithKinetic};
+use liestep::mechanics::{DiscreteLagrangian, Effect, Facts, Limit, Parts, SceneVisitor, Term, WithKinetic, inertia};
 use liestep::nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 
@@ -97,7 +97,7 @@ impl Effect for Body {
     }
 
     fn constants(&self, h: f64) -> Self::Constants {
-        (self.inertia(&()), 0.5 * h)
+        (inertia(self, &()), 0.5 * h)
     }
 
     fn kick_before(_: &Self::Constants, (): &()) -> Vector3<f64> {

@@ -4,7 +4,7 @@
 //! solved by a loop of a few lines.
 
 use liestep::groups::{Advected, LieGroup as _, Retraction as _};
-use liestep::mechanics::{DiscreteLagrangian, Effect};
+use liestep::mechanics::{DiscreteLagrangian, Effect, inertia};
 use liestep::numbers::Coordinates as _;
 use liestep::{SO3, StateOf, StepError, Stepper};
 use nalgebra::Vector3;
@@ -126,6 +126,6 @@ fn energy<L: Effect<Scalar = f64, Group = SO3, Advected = Vector3<f64>>>(
     w: &Vector3<f64>,
 ) -> f64 {
     let rates =
-        lagrangian.inertia(&lagrangian.advected()).lu().solve(momentum).unwrap_or_else(|| Vector3::repeat(f64::NAN));
+        inertia(lagrangian, &lagrangian.advected()).lu().solve(momentum).unwrap_or_else(|| Vector3::repeat(f64::NAN));
     0.5 * rates.dot(momentum) - lagrangian.limit(None, w).l
 }

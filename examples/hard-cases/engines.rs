@@ -4,7 +4,7 @@
 //! normalised, so they differ only in the gyroscopic term.
 
 use liestep::effects::PrincipalBody;
-use liestep::mechanics::{Effect as _, Term as _};
+use liestep::mechanics::{Term as _, inertia};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use workbench::run::{EarlyEnd, Method, Sample};
 
@@ -18,7 +18,7 @@ pub(crate) struct Moments {
 impl Moments {
     /// The moments of the declared body.
     pub(crate) fn of(body: &PrincipalBody) -> Self {
-        let moments = body.inertia(&body.advected()).diagonal();
+        let moments = inertia(body, &body.advected()).diagonal();
         Self { moments, inverses: moments.map(f64::recip) }
     }
 

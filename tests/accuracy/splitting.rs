@@ -5,7 +5,7 @@ use checks::solvers::JacobianCounter;
 use declarations::{FourthOrderBody, FourthOrderTop, FreeBody, HeavyTop, LogTop, Motion, SixthOrderBody, Top as _};
 use liestep::accuracy::Accuracy;
 use liestep::effects::{GravityGradient, Rotor, Spring};
-use liestep::mechanics::{Effect, Term as _};
+use liestep::mechanics::{Term as _, inertia};
 use liestep::methods::{CompositionScheme, KineticFlow, SplittingScheme, SymmetricBody};
 use liestep::prelude::*;
 use nalgebra::Vector3;
@@ -204,7 +204,7 @@ fn the_kinetic_part_is_replaced() {
 fn a_failed_step_leaves_the_state() {
     let top = HeavyTop::asymmetric();
     let kinetic = FreeBody { J_d: DiagonalNonstandardInertia::from_diagonal(*top.J_d.diagonal()).unwrap().into() };
-    assert!((Effect::inertia(&kinetic, &kinetic.advected()) - Effect::inertia(&top, &top.advected())).norm() < 1e-14);
+    assert!((inertia(&kinetic, &kinetic.advected()) - inertia(&top, &top.advected())).norm() < 1e-14);
     let splitting = Stepper::split(top, 1.0, kinetic, SplittingScheme::STRANG).unwrap();
     let mut state = splitting.start(SO3::identity(), Vector3::new(5.0, 5.0, 5.0)).unwrap();
     let before = state;

@@ -4,6 +4,7 @@
 use liestep::Stepper;
 use liestep::groups::LieGroup as _;
 use liestep::laws::samples::Random;
+use liestep::mechanics::inertia;
 use liestep::numbers::Coordinates as _;
 
 use crate::structure::{Group as _, System, Vector, axis, gradient, norm, norm_of_map};
@@ -30,7 +31,7 @@ pub fn assert_limit<L: System + Clone>(system: &L, name: &str) {
     let state = stepper.start(attitude, velocity).unwrap();
     let (momentum, w) = (state.momentum(), state.advected());
     let l = |xi: Vector<L>| limit(|h| system.l_d(&L::Group::along(&xi, h).matrix(), &w, h) / h);
-    let scale = norm_of_map::<L>(&system.inertia(&w)) + system.limit(None, &w).l.abs() + norm(&momentum);
+    let scale = norm_of_map::<L>(&inertia(system, &w)) + system.limit(None, &w).l.abs() + norm(&momentum);
 
     let missed = norm(&(gradient::<L>(&|k, t| l(velocity + axis(k, t))) - momentum)) / scale;
     let legendre = (stepper.energy(&state) - (momentum.dot(&velocity) - l(velocity))).abs() / scale;

@@ -2,7 +2,7 @@
 
 use checks::random::Random;
 use liestep::effects::{Dipole, Drag, GravityGradient, Rotor, Spring, Torque};
-use liestep::mechanics::{AxiallyInvariant, Effect, Regular};
+use liestep::mechanics::{DiscreteLagrangian, Effect, OneVector, Regular};
 use liestep::prelude::*;
 use nalgebra::{UnitQuaternion, Vector3};
 use workbench::measure::relative;
@@ -16,7 +16,7 @@ fn body(moments: [f64; 3]) -> PrincipalBody {
 /// The state after this number of steps of 0.01 s, and the largest change of the axial momentum.
 fn moved<L>(scene: L, count: usize) -> (StateOf<L>, f64)
 where
-    L: Regular<Scalar = f64, Group = SO3> + AxiallyInvariant,
+    L: Regular + DiscreteLagrangian<Scalar = f64, Group = SO3, Advected: OneVector<Scalar = f64>>,
 {
     let (stepper, mut state) = started(scene, 0.01);
     let axial = stepper.momentum_along_advected(&state);

@@ -44,10 +44,12 @@ fn kept<S: Regular<Scalar = f64>>(stepper: &Stepper<S>, mut state: StateOf<S>, s
         stepper.step(&mut state).unwrap();
         let f = before.attitude().inverse().compose(&state.attitude()).matrix();
         let mut values = Vec::new();
-        scene.constrained(&f, &before.advected(), h, &mut |value, _| values.push(value));
+        scene.constrained(Some((&f, h)), &before.advected(), &mut |value, _| values.push(value));
         let velocity = stepper.velocity(&state);
         let mut rates = Vec::new();
-        scene.reactions(&state.advected(), &mut |own| rates.push(liestep::numbers::Coordinates::dot(&own, &velocity)));
+        scene.constrained(None, &state.advected(), &mut |_, own| {
+            rates.push(liestep::numbers::Coordinates::dot(&own, &velocity))
+        });
         assert!(!values.is_empty() && values.len() == rates.len());
         let largest = |all: &[f64]| all.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         worst[0] = worst[0].max(largest(&values));

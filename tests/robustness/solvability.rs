@@ -2,7 +2,7 @@
 
 use checks::random::Random;
 use declarations::{CayleyTop, FreeBody, FullTop, HeavyTop, Motion, Top as _};
-use liestep::mechanics::{Effect as _, Regular};
+use liestep::mechanics::{Effect as _, Regular, inertia};
 use liestep::motion::{DiscreteLiePoisson, Solvability};
 use liestep::prelude::*;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -13,7 +13,7 @@ where
     L: Regular<Scalar = f64, Group = SO3, Advected = Vector3<f64>> + Clone + core::fmt::Debug,
 {
     let mut random = Random::new(seed);
-    let inertia = lagrangian.inertia(&lagrangian.advected()).symmetric_eigenvalues();
+    let inertia = inertia(lagrangian, &lagrangian.advected()).symmetric_eigenvalues();
     let mut found = [0; 3];
     for _ in 0..2000 {
         let h = 10.0_f64.powf(random.signed() * 3.0);

@@ -5,6 +5,7 @@ use checks::structure::symmetry::symmetries;
 use checks::structure::{Group as _, System, Vector, gradient, norm, norm_of_map, symplectic};
 use liestep::groups::{Advected as _, LieGroup as _};
 use liestep::laws::samples::{Random, derivative};
+use liestep::mechanics::inertia;
 use liestep::motion::DiscreteLiePoisson;
 use liestep::numbers::Coordinates as _;
 
@@ -32,7 +33,7 @@ fn legendre_transforms<L: System>(l: &L, first: &L::Group, second: &L::Group) ->
 fn assert_variational<L: System + Clone>(l: &L, name: &str) {
     let mut random = Random::new(14);
     let flow = DiscreteLiePoisson::new(l.clone(), H).unwrap();
-    let scale = norm_of_map::<L>(&l.inertia(&l.advected())) / H;
+    let scale = norm_of_map::<L>(&inertia(l, &l.advected())) / H;
     let close = |what: &str, a: Vector<L>, b: Vector<L>| {
         let error = norm(&(a - b)) / scale;
         assert!(error < DIFFERENCES, "{name}: {what}: off by {error:e}");

@@ -101,12 +101,8 @@ const fn kind(kind: ParameterKind) -> &'static str {
 
 fn carried(one: &Carried) -> Value {
     let (action, factors) = match one.action {
-        Action::Covector(k) => ("covector", vec![k]),
-        Action::Contravariant(k) => ("vector", vec![k]),
+        Action::Moved(variance, k) => (variance.noun(), vec![k]),
         Action::Point(k) => ("point", vec![k]),
-        Action::ContravariantTensor(k) => ("contravariant tensor", vec![k]),
-        Action::CovariantTensor(k) => ("covariant tensor", vec![k]),
-        Action::MixedTensor(k) => ("mixed tensor", vec![k]),
         Action::Relative { of, from } => ("relative", vec![of, from]),
         Action::Configuration(of) => ("configuration", vec![of]),
         Action::Given => ("given", Vec::new()),

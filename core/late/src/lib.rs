@@ -30,6 +30,6 @@ pub use liestep_derivation::whole::Sizes;
 pub use liestep_derivation::{Array, Function, Operation, Program, Role, Source, Stages};
 pub use whole::{
     BackendInLanes, Between, Course, Derivatives, Direction, Gradient, Paced, Question, QuestionError, Reading, Row,
-    Signal, SignalError, Steered, Transition, Varied, Whole, WholeError, for_accuracy, layout, stepper,
+    Signal, SignalError, Transition, Varied, Whole, WholeError, for_accuracy, layout, stepper,
 };
 pub use written::{c, constant, gpu, header, is_exact, javascript, numbered, prefix, rust};

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use liestep::gradients::Plant;
+use liestep::gradients::Plant as _;
 use liestep::motion::{AnyStepper, FactorKind, Integrator as _, Propagator as _};
 use liestep::recording::{Column, Sink as _};
 use liestep::with::Method;
@@ -62,8 +62,8 @@ struct Figures {
 }
 
 impl Planned {
-    fn of<M: Slices>(plan: ControlPlan<M>, stepper: Whole<Backend>) -> Self {
-        let ControlPlan { states, inputs, duration, cost, multipliers, residual, iterations, verdict, .. } = plan;
+    fn of(plan: ControlPlan<Whole<Backend>>) -> Self {
+        let ControlPlan { stepper, states, inputs, duration, cost, multipliers, residual, iterations, verdict, .. } = plan;
         let residual = residual.largest();
         Self {
             stepper,
@@ -74,17 +74,6 @@ impl Planned {
     }
 }
 
-/// A plant on slices of numbers.
-pub(crate) trait Slices:
-    Plant<State = Box<[f64]>, Motion = [f64], Attitude = Vec<f64>, Vector = Vec<f64>, Input = Vec<f64>>
-{
-}
-
-impl<M> Slices for M where
-    M: Plant<State = Box<[f64]>, Motion = [f64], Attitude = Vec<f64>, Vector = Vec<f64>, Input = Vec<f64>>
-{
-}
-
 /// The plan, and the exception raised during its search.
 type PlanResult = (Planned, Option<PyErr>);
 
@@ -92,25 +81,13 @@ impl Task {
     fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<PlanResult, Failure> {
         let stepper = Whole::<Backend>::of(Declaration::sum(terms)?, numbers, self.step, Method::default())?;
         if self.inputs.is_empty() {
-            let (plan, raised) = self.solve_with(&stepper, &stepper, stepper.force(), self.axes.clone())?;
-            let own = plan.stepper.clone();
-            return Ok((Planned::of(plan, own), raised));
+            return self.solve_with(&stepper, self.axes.clone());
         }
         let steered = stepper.steered(self.axes.clone()).map_err(|error| Failure::setup(&error))?;
-        let places = (0..self.axes.len()).collect();
-        let (plan, raised) = self.solve_with(&steered, &stepper, steered.force(), places)?;
-        let own = plan.stepper.whole().clone();
-        Ok((Planned::of(plan, own), raised))
+        self.solve_with(&steered, (0..self.axes.len()).collect())
     }
 
-    /// The plan with this plant, whose scene is stepped by the stepper.
-    fn solve_with<M: Slices>(
-        &self,
-        plant: &M,
-        stepper: &Whole<Backend>,
-        like: Vec<f64>,
-        places: Vec<usize>,
-    ) -> Result<(ControlPlan<M>, Option<PyErr>), Failure> {
+    fn solve_with(&self, stepper: &Whole<Backend>, places: Vec<usize>) -> Result<PlanResult, Failure> {
         let factors = &stepper.layout().factors;
         let at = |place: &Start| {
             let rest = vec![0.0; stepper.dimension()];
@@ -142,8 +119,8 @@ impl Task {
         let force =
             |step: usize, axis: usize| self.forces.get(step * self.axes.len() + axis).copied().unwrap_or([f64::NAN; 3]);
         let (time, effort) = if self.is_shortest { (1.0, 0.0) } else { (0.0, 1.0) };
-        let control = Control::new(plant, at(&self.start)?, self.steps, target)
-            .input(like, places)
+        let control = Control::new(stepper, at(&self.start)?, self.steps, target)
+            .input(stepper.force(), places)
             .bounds(|step, axis| (force(step, axis)[0], force(step, axis)[1]))
             .guess(|step, axis| force(step, axis)[2])
             .minimise(Cost { time, effort })
@@ -158,7 +135,7 @@ impl Task {
             _ => Failure::setup(&error),
         })?;
         drop(control);
-        Ok((plan, raised.into_inner()))
+        Ok((Planned::of(plan), raised.into_inner()))
     }
 }
 

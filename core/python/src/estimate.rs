@@ -9,7 +9,6 @@ use nalgebra::DMatrix;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::control::Slices;
 use crate::failure::Failure;
 use crate::scene::Backend;
 use crate::start::Start;
@@ -87,7 +86,7 @@ struct Found {
 }
 
 impl Found {
-    fn of<M: Slices>(fit: Fit<M>) -> Self {
+    fn of(fit: Fit<Whole<Backend>>) -> Self {
         let Fit { states, inputs, constants, covariance, squares, iterations, verdict, .. } = fit;
         Self { states, inputs, constants, covariance, squares, iterations, verdict }
     }
@@ -107,40 +106,30 @@ impl Task {
     fn solve(&self, terms: &[&'static Declaration], numbers: &[f64]) -> Result<Found, Failure> {
         let whole = Whole::<Backend>::of(Declaration::sum(terms)?, numbers, self.step, Method::default())?;
         if !self.are_parameters {
-            let fit = self.solve_with(&whole, (&whole, numbers), whole.force(), self.axes.clone(), Some)?;
-            return Ok(Found::of(fit));
+            return self.solve_with(&whole, numbers, self.axes.clone());
         }
         let steered = whole.steered(self.axes.clone()).map_err(|error| Failure::setup(&error))?;
-        let places = (0..self.axes.len()).collect();
-        let again = |whole: Whole<Backend>| whole.steered(self.axes.clone()).ok();
-        Ok(Found::of(self.solve_with(&steered, (&whole, numbers), steered.force(), places, again)?))
+        self.solve_with(&steered, numbers, (0..self.axes.len()).collect())
     }
 
-    fn solve_with<M: Slices>(
-        &self,
-        plant: &M,
-        (whole, numbers): (&Whole<Backend>, &[f64]),
-        like: Vec<f64>,
-        places: Vec<usize>,
-        of: impl Fn(Whole<Backend>) -> Option<M>,
-    ) -> Result<Fit<M>, Failure> {
+    fn solve_with(&self, whole: &Whole<Backend>, numbers: &[f64], places: Vec<usize>) -> Result<Found, Failure> {
         let factors = &whole.layout().factors;
         let (attitude, velocity) = (self.start.attitude(factors)?, self.start.velocity(factors)?);
         let start = whole.start(&attitude, velocity).map_err(|error| Failure::setup(&error))?;
         let readings = |step: usize, state: &[f64], constants: &[f64]| {
             predicted(self, whole, step, state, &self.numbers(numbers, constants))
         };
-        let stepper = |constants: &[f64]| whole.with(&self.numbers(numbers, constants), self.step).ok().and_then(&of);
+        let stepper = |constants: &[f64]| whole.with(&self.numbers(numbers, constants), self.step).ok();
         let known = DMatrix::from_diagonal(&nalgebra::DVector::from_column_slice(&self.known));
-        let mut estimate = Estimate::new(plant, start, self.steps, readings);
+        let mut estimate = Estimate::new(whole, start, self.steps, readings);
         if !self.unknowns.is_empty() {
             estimate = estimate.unknowns(self.guesses.clone(), self.scales.clone()).steppers(stepper);
         }
         if !self.axes.is_empty() {
-            estimate = estimate.inputs(like, places, self.deviations.clone());
+            estimate = estimate.inputs(whole.force(), places, self.deviations.clone());
         }
         let found = estimate.known(known).until(self.tolerance, self.most).growing_from(self.first).solve();
-        found.map_err(|error| match error {
+        found.map(Found::of).map_err(|error| match error {
             ControlError::Step(..) => Failure::step(&error),
             _ => Failure::setup(&error),
         })

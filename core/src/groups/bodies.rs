@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::array::from_fn;
 
 use super::{Advected, CayleyRetraction, ExponentialRetraction, Factor, LieGroup, Retraction, SquareOf, layout};
-use crate::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Join, Mask, Twice, filled, nowhere};
+use crate::numbers::{BlockDiagonal, Blocks, Bodies, Coordinates, Join, Mask, filled, nowhere};
 use nalgebra::SimdBool as _;
 
 /// Zero increments of all bodies.
@@ -244,7 +244,7 @@ pub trait Pair: LieGroup {
 impl<G: LieGroup> Pair for (G, G)
 where
     (G, G): LieGroup<Scalar = G::Scalar, Matrix = (G::Matrix, G::Matrix), Vector = JoinedVector<G>>,
-    G::Vector: Twice<G::Scalar>,
+    G::Vector: Join<G::Scalar, G::Vector>,
 {
     type Body = G;
 
@@ -279,7 +279,7 @@ where
     B: LieGroup<Scalar = A::Scalar>,
     (A, B): LieGroup<Scalar = A::Scalar, Matrix = (A::Matrix, B::Matrix)> + Factor<0, Of = A> + Factor<1, Of = B>,
     A::Vector: Join<A::Scalar, B::Vector, Joined = <(A, B) as LieGroup>::Vector>,
-    <(A, B) as LieGroup>::Vector: Twice<A::Scalar>,
+    <(A, B) as LieGroup>::Vector: Join<A::Scalar, <(A, B) as LieGroup>::Vector>,
     Self: LieGroup<
             Scalar = A::Scalar,
             Matrix = (A::Matrix, B::Matrix, A::Matrix, B::Matrix),

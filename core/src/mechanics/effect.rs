@@ -166,11 +166,6 @@ pub trait Effect: Term {
     /// products with zeros. If the limit is `½ ξ·Jξ + s·ξ − V`, this is [`Limit::quadratic`].
     fn limit(&self, velocity: Option<&Vector<Self>>, w: &Self::Advected) -> Limit<Self>;
 
-    /// The matrix `J(w)` of the [limit](Self::limit) at rest; for a single body it is the same for all `w`.
-    fn inertia(&self, w: &Self::Advected) -> Square<Self> {
-        self.limit(None, w).hessian
-    }
-
     /// The advected and prescribed parameters with another energy `E_0`, J, and the previous `E_0`; `None` if no `pace`
     /// was declared.
     ///
@@ -253,19 +248,15 @@ pub trait Effect: Term {
         Self::newton_system(constants, terms, half).0
     }
 
-    /// Visits the [constraints on velocities](crate::mechanics::Nonholonomic) at an increment: each with its value and its
-    /// slope.
+    /// Visits the [constraints on velocities](crate::mechanics::Nonholonomic): at an increment of a step each with its value and
+    /// its slope, at rest with zero and the covector of its reaction.
     fn constrained(
         &self,
-        _: &Matrix<Self>,
+        _at: Option<(&Matrix<Self>, Self::Scalar)>,
         _: &Self::Advected,
-        _h: Self::Scalar,
         _each: &mut dyn FnMut(Self::Scalar, Vector<Self>),
     ) {
     }
-
-    /// Visits the covectors of the reactions of the [constraints on velocities](crate::mechanics::Nonholonomic).
-    fn reactions(&self, _: &Self::Advected, _each: &mut dyn FnMut(Vector<Self>)) {}
 
     /// `Ad*_F` of the part of the diamond that depends on `F`, as a function of the new `w⁺`; `increment` is `F − I`.
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self>;

@@ -42,12 +42,12 @@ pub struct Facts {
     /// The power of the Cayley denominator in the factor of [`newton_system`](crate::mechanics::Effect::newton_system).
     pub denominators: u32,
 
-    /// Whether [`inertia`](crate::mechanics::Effect::inertia) is the same for all `w`. If so, it is checked once, when a
+    /// Whether [`inertia`](crate::mechanics::inertia()) is the same for all `w`. If so, it is checked once, when a
     /// stepper is constructed, and methods that contain the motion of one free body are available.
     pub has_constant_inertia: bool,
 
     /// Whether the continuous limit is quadratic in the velocity. If it isn't,
-    /// [`inertia`](crate::mechanics::Effect::inertia) is that at rest, and [`limit`](crate::mechanics::Effect::limit) has
+    /// [`inertia`](crate::mechanics::inertia()) is that at rest, and [`limit`](crate::mechanics::Effect::limit) has
     /// the values elsewhere.
     pub is_quadratic: bool,
 

@@ -44,12 +44,12 @@ pub use operations::Operations;
 pub(crate) use second_derivatives::PointOf;
 pub use second_derivatives::{SecondDerivatives, StepDerivatives, StepPoint};
 pub use sum::{SharedBy, Sum};
-pub use symmetry::{AxiallyInvariant, LeftInvariant, OneVector};
+pub use symmetry::{LeftInvariant, OneVector};
 pub use systems::{
     Along, At, Between, Coupling, Each, Neighbours, On, Pairs, Placement, Places, SeenBetween, WhereAllAre,
 };
 pub use term::Term;
-pub use velocity::FactoredInertia;
+pub use velocity::{FactoredInertia, inertia};
 pub(crate) use velocity::{
     check_inertia, check_velocity, constant_inertia, energy, estimated_velocity, factored_inertia,
     momentum_of_velocity, velocity_and_energy, velocity_of_momentum,

@@ -118,7 +118,7 @@ impl<V: Coordinates<T>, T: Real> Normal<V, T> {
 /// The covectors of a scene's reactions, each with its part across those before.
 pub(crate) fn normals<E: Effect>(scene: &E, w: &E::Advected) -> Vec<Normal<Vector<E>, Scalar<E>>> {
     let mut all: Vec<Normal<Vector<E>, Scalar<E>>> = Vec::new();
-    scene.reactions(w, &mut |own| {
+    scene.constrained(None, w, &mut |_, own| {
         let (mut across, mut shares) = (own, Vec::new());
         for before in &all {
             let share = -(across.dot(&before.across) / before.square);

@@ -88,7 +88,7 @@ pub trait SecondDerivatives: Effect {
 
     /// The gradient of `⟨u, D_v τ⟩ + ⟨r, τ − J u⟩` for `weights = [u, r]`. Here `τ` is the torque, the
     /// [`kick_before`](Effect::kick_before) of a step of two seconds, `D_v τ` its [derivative](Effect::kick_derivative)
-    /// along the velocity `v`, and `J` the [inertia](Effect::inertia). `None` if `D_v τ` or its derivative isn't known.
+    /// along the velocity `v`, and `J` the [inertia](crate::mechanics::inertia()). `None` if `D_v τ` or its derivative isn't known.
     ///
     /// Results are returned and visited as by [`adjoint_gradient`](Self::adjoint_gradient). The derivatives of a force
     /// gradient need no more from a term: with `J u = τ` and `J r = D_v τ` this is the gradient of `⟨J⁻¹τ, D_v τ⟩`,

@@ -246,18 +246,12 @@ where
 
     fn constrained(
         &self,
-        f: &Matrix<Self>,
+        at: Option<(&Matrix<Self>, Self::Scalar)>,
         w: &Self::Advected,
-        h: Self::Scalar,
         each: &mut dyn FnMut(Self::Scalar, Vector<Self>),
     ) {
-        self.first.constrained(f, &w.0, h, each);
-        self.second.constrained(f, &w.1, h, each);
-    }
-
-    fn reactions(&self, w: &Self::Advected, each: &mut dyn FnMut(Vector<Self>)) {
-        self.first.reactions(&w.0, each);
-        self.second.reactions(&w.1, each);
+        self.first.constrained(at, &w.0, each);
+        self.second.constrained(at, &w.1, each);
     }
 
     fn kick_after(constants: &Self::Constants, increment: &Matrix<Self>, next: &Self::Advected) -> Vector<Self> {

@@ -3,7 +3,6 @@
 
 use nalgebra::SVector;
 
-use crate::groups::SO3;
 use crate::mechanics::lagrangian::DiscreteLagrangian;
 use crate::mechanics::sum::Sum;
 use crate::numbers::Real;
@@ -28,14 +27,14 @@ where
 {
 }
 
-/// Advected parameters that consist of exactly one vector of space: rotations about it are a symmetry.
+/// Advected parameters that consist of exactly one vector of space: rotations about it are a symmetry of a Lagrangian on
+/// SO(3), and the momentum along it is conserved exactly, (3.20).
 #[diagnostic::on_unimplemented(
     message = "no momentum along a direction is conserved, as this scene doesn't advect exactly one vector",
     label = "advects none or several",
     note = "with two or more, rotations about either change the other; with none, all of the spatial momentum is \
             conserved: `Stepper::spatial_momentum`"
 )]
-#[doc(hidden)]
 pub trait OneVector {
     /// The scalar of the vector's components.
     type Scalar: Real;
@@ -65,22 +64,5 @@ impl<B: OneVector> OneVector for ((), B) {
 
     fn vector(&self) -> SVector<B::Scalar, 3> {
         self.1.vector()
-    }
-}
-
-/// A Lagrangian on SO(3) with one advected vector: it is invariant under rotations about that vector, and the momentum
-/// along it is conserved exactly, (3.20).
-pub trait AxiallyInvariant: DiscreteLagrangian {
-    /// The vector among these advected parameters.
-    fn axis(w: &Self::Advected) -> SVector<Self::Scalar, 3>;
-}
-
-impl<T: Real, L> AxiallyInvariant for L
-where
-    L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>,
-    L::Advected: OneVector<Scalar = T>,
-{
-    fn axis(w: &Self::Advected) -> SVector<T, 3> {
-        w.vector()
     }
 }

@@ -109,7 +109,7 @@ fn energy_of_velocity<E: Effect>(effect: &E, velocity: &Vector<E>, w: &E::Advect
         let Limit { l, momentum, .. } = effect.limit(Some(velocity), w);
         return velocity.dot(&momentum) - l;
     }
-    quadratic_energy(effect, velocity, &effect.inertia(w), w)
+    quadratic_energy(effect, velocity, &inertia(effect, w), w)
 }
 
 #[hot]
@@ -117,10 +117,15 @@ fn quadratic_energy<E: Effect>(effect: &E, velocity: &Vector<E>, inertia: &Squar
     velocity.dot(&(*inertia * *velocity)) * real(0.5) - effect.limit(None, w).l
 }
 
+/// The matrix `J(w)` of an effect's [limit](Effect::limit) at rest; for a single body it is the same for all `w`.
+pub fn inertia<E: Effect>(effect: &E, w: &E::Advected) -> Square<E> {
+    effect.limit(None, w).hessian
+}
+
 /// The inertia, if it is the same for all configurations.
 pub(crate) fn constant_inertia<E: Effect>(effect: &E) -> Result<Square<E>, SetupError> {
     if effect.facts().has_constant_inertia && effect.facts().is_quadratic {
-        Ok(effect.inertia(&effect.advected()))
+        Ok(inertia(effect, &effect.advected()))
     } else {
         Err(SetupError::VaryingInertia)
     }

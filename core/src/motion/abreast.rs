@@ -6,11 +6,10 @@ use alloc::vec::Vec;
 use core::any::Any;
 
 use crate::error::StepError;
-use crate::motion::propagator::Propagator;
 
 /// Several bodies that are stepped together, each with the bits that it has alone and its own end.
 pub trait Abreast {
-    /// Steps every running body `steps` times, as its own [`run_stretches`](Propagator::run_stretches) would.
+    /// Steps every running body `steps` times, as its own [`run_stretches`](crate::motion::Propagator::run_stretches) would.
     fn run(&mut self, steps: u64);
 
     /// The numbers of a body's state; if it has stopped, those before the step that failed.
@@ -20,33 +19,27 @@ pub trait Abreast {
     fn error(&self, body: usize) -> Option<&StepError>;
 }
 
-/// A propagator whose bodies can be stepped together.
-pub trait Joinable: Propagator + Sized + 'static {
-    /// The limit of the bodies that are stepped together.
-    const MOST: usize;
-
-    /// The bodies of these propagators in these states, at most [`MOST`](Self::MOST); `None` if they can't be stepped together.
-    fn join(bodies: &[(&Self, &[f64])]) -> Option<Box<dyn Abreast>>;
-}
-
-/// A propagator with a state.
-type Body<'a> = (&'a dyn Any, &'a [f64]);
+/// The bodies of these propagators in these states; `None` if they can't be stepped together.
+pub type Together<P> = fn(&[(&P, &[f64])]) -> Option<Box<dyn Abreast>>;
 
 /// The bodies of an [`AnyStepper`](crate::motion::AnyStepper), which are stepped together if their propagators are of one type.
 #[derive(Clone)]
 pub(super) struct Joint {
     propagator: Rc<dyn Any>,
     pub(super) most: usize,
-    join: fn(&[Body<'_>]) -> Option<Box<dyn Abreast>>,
+    join: Rc<Join>,
 }
 
+/// The bodies of propagators in their states, if these are of the type of the first.
+type Join = dyn Fn(&[(&dyn Any, &[f64])]) -> Option<Box<dyn Abreast>>;
+
 impl Joint {
-    pub(super) fn of<P: Joinable>(propagator: &Rc<P>) -> Self {
-        let join = |bodies: &[Body<'_>]| {
-            let typed = bodies.iter().map(|(propagator, state)| Some((propagator.downcast_ref::<P>()?, *state)));
-            P::join(&typed.collect::<Option<Vec<_>>>()?)
+    pub(super) fn of<P: 'static>(propagator: &Rc<P>, most: usize, together: Together<P>) -> Self {
+        let join = move |bodies: &[(&dyn Any, &[f64])]| {
+            let typed = bodies.iter().map(|(propagator, state)| Some((propagator.downcast_ref()?, *state)));
+            together(&typed.collect::<Option<Vec<_>>>()?)
         };
-        Self { propagator: Rc::clone(propagator) as Rc<dyn Any>, most: P::MOST, join }
+        Self { propagator: Rc::clone(propagator) as Rc<dyn Any>, most, join: Rc::new(join) }
     }
 
     pub(super) fn together<'a>(

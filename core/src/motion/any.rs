@@ -10,7 +10,7 @@ use core::ops::Deref;
 use crate::error::{SetupError, StepError};
 use crate::groups::layout::{Factor, FactorKind};
 use crate::groups::{LieGroup, SO3};
-use crate::motion::abreast::{Abreast, Joinable, Joint};
+use crate::motion::abreast::{Abreast, Joint, Together};
 use crate::motion::integrator::Integrator;
 use crate::motion::plan::Cost;
 use crate::motion::propagator::{Layout, Propagator};
@@ -55,10 +55,10 @@ impl AnyStepper {
         Self { propagator: Rc::new(propagator), layout, joint: None }
     }
 
-    /// A stepper of this propagator, whose bodies can be stepped [together](Self::abreast).
-    pub fn joinable(propagator: impl Joinable) -> Self {
+    /// A stepper of this propagator, of whose bodies at most so many can be stepped [together](Self::abreast).
+    pub fn joinable<P: Propagator + 'static>(propagator: P, most: usize, together: Together<P>) -> Self {
         let (layout, propagator) = (Rc::new(propagator.layout().clone()), Rc::new(propagator));
-        Self { joint: Some(Joint::of(&propagator)), propagator, layout }
+        Self { joint: Some(Joint::of(&propagator, most, together)), propagator, layout }
     }
 
     /// The longest leading part of these bodies that is stepped together, and its number of bodies; `None` if the first one is

@@ -42,7 +42,7 @@ mod state;
 pub(crate) mod summation;
 
 pub use crate::groups::layout::{Factor, FactorKind};
-pub use abreast::{Abreast, Joinable};
+pub use abreast::{Abreast, Together};
 pub use any::{AnyMotion, AnyState, AnyStepper};
 pub use batch::{Batch, Batchable};
 pub use flows::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
@@ -65,7 +65,7 @@ pub use state::ElapsedTime;
 pub use state::State;
 pub(crate) use stepper::check_attitude;
 pub use stepper::{StateOf, Stepper};
-pub use summation::{Motion, Summation, SumsOf};
+pub use summation::{Motion, Summation};
 pub(crate) use summation::{MotionOf, STEPS_BETWEEN_CHECKS, TOLERATED, is_due, restored};
 
 pub use crate::solving::{Guess, Solvability, WarmStart};

@@ -172,12 +172,6 @@ pub(crate) fn is_due<G: LieGroup>(steps: u64) -> bool {
     steps.is_multiple_of(u64::from(if has_several::<G>() { STEPS_BETWEEN_SEVERAL } else { STEPS_BETWEEN_CHECKS }))
 }
 
-/// A [`Summation`] of a scene's motions.
-#[doc(hidden)]
-pub trait SumsOf<S: Term>: Summation<Group<S>, S::Advected> {}
-
-impl<S: Term, M: Summation<Group<S>, S::Advected>> SumsOf<S> for M {}
-
 #[hot]
 impl<G: LieGroup, A: Advected<G>> Summation<G, A> for Motion<G, A> {
     const CARRIES: bool = false;

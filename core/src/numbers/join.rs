@@ -23,6 +23,10 @@ pub trait Join<T: Real, Other: Coordinates<T>>: Coordinates<T> {
     /// The block-diagonal map that acts on each separately.
     #[must_use]
     fn join_squares(first: &Self::Square, second: &Other::Square) -> <Self::Joined as Coordinates<T>>::Square;
+
+    /// The four blocks of a matrix of two equal bodies, row by row.
+    #[must_use]
+    fn blocks(joined: &<Self::Joined as Coordinates<T>>::Square) -> [[Self::Square; 2]; 2];
 }
 
 impl<T: Real, const A: usize, const B: usize, const C: usize> Join<T, SVector<T, B>> for SVector<T, A>
@@ -62,21 +66,10 @@ where
             _ => T::zero(),
         })
     }
-}
 
-/// Components that can be joined with those of an equal body.
-pub trait Twice<T: Real>: Join<T, Self> {
-    /// The four blocks of a matrix of both bodies, row by row.
-    #[must_use]
-    fn blocks(joined: &<Self::Joined as Coordinates<T>>::Square) -> [[Self::Square; 2]; 2];
-}
-
-impl<T: Real, const A: usize, const C: usize> Twice<T> for SVector<T, A>
-where
-    Const<A>: DimAdd<Const<A>, Output = Const<C>>,
-{
     #[hot]
     fn blocks(joined: &SMatrix<T, C, C>) -> [[SMatrix<T, A, A>; 2]; 2] {
+        const { assert!(A == B, "the bodies are equal") }
         let block = |row: usize, column: usize| joined.fixed_view::<A, A>(row, column).into_owned();
         [[block(0, 0), block(0, A)], [block(A, 0), block(A, A)]]
     }

@@ -51,7 +51,7 @@ pub(crate) use exact::{carried_sum, two_square};
 pub(crate) use history::{History, Parabola, Polynomial};
 #[doc(hidden)]
 pub use identity::Identity;
-pub use join::{Join, Twice};
+pub use join::Join;
 pub use lanes::{InLanes, Lanes, Numbers};
 pub(crate) use newton::{NewtonEnd, newton_halving};
 pub(crate) use registers::{Columns, OnRegisters, Plain, Register, cross, dot, on_registers, padded, square, vector};

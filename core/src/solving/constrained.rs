@@ -19,7 +19,7 @@ use alloc::vec::Vec;
 
 use super::problem::Problem;
 use crate::groups::{LieGroup as _, Retraction as _};
-use crate::mechanics::{Effect, Matrix, Scalar, Square, Vector, normals};
+use crate::mechanics::{Effect, Matrix, Scalar, Square, Vector, inertia, normals};
 use crate::numbers::Coordinates as _;
 
 /// A value and a slope of each constraint, or what is made of them.
@@ -27,12 +27,12 @@ type Rows<L> = Vec<(Scalar<L>, Vector<L>)>;
 
 /// The trace of the inertia at the identity, by which the rows of a Jacobian are commensurable.
 fn scale<L: Effect>(problem: &Problem<'_, L>) -> Scalar<L> {
-    Vector::<L>::trace(&problem.scene.inertia(&problem.scene.advected()))
+    Vector::<L>::trace(&inertia(problem.scene, &problem.scene.advected()))
 }
 
 fn rows<L: Effect>(problem: &Problem<'_, L>, f: &Matrix<L>) -> Rows<L> {
     let mut rows = Vec::new();
-    problem.scene.constrained(f, problem.w, problem.h, &mut |value, slope| rows.push((value, slope)));
+    problem.scene.constrained(Some((f, problem.h)), problem.w, &mut |value, slope| rows.push((value, slope)));
     rows
 }
 

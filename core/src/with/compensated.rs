@@ -10,8 +10,7 @@ use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
 use crate::methods::{Composition, KineticFlow, LinkedBodies, ProcessedSplitting, Splitting};
 use crate::motion::{
-    Kept, Motion, MotionOf, OwnStep, Plan, Steerable, StepReport, Stepper, Summation, SumsOf, TOLERATED, Variable,
-    restored,
+    Kept, Motion, MotionOf, OwnStep, Plan, Steerable, StepReport, Stepper, Summation, TOLERATED, Variable, restored,
 };
 use crate::numbers::{Entries, carried_sum, replaced, zero};
 use crate::with::remedies::Substeps;
@@ -111,7 +110,12 @@ impl<S: Effect, P: Plan<S>> Plan<S> for CompensatedSums<P> {
     }
 
     #[hot]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
         let mut sums = Sums { motion: *motion.now(), carry: kept.1 };
         let report = self.0.step(scene, &mut sums, &mut kept.0)?;
         motion.replace(sums.motion);

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3, Vector6};
 
 use crate::groups::{R3, SO3};
-use crate::mechanics::DiscreteLagrangian;
+use crate::mechanics::{DiscreteLagrangian, inertia};
 use crate::motion::Motion;
 use crate::numbers::{Bodies, Coordinates as _};
 
@@ -38,7 +38,7 @@ pub fn turn<L: DiscreteLagrangian<Scalar = f64, Group = SO3> + Clone>(
 ) -> impl Fn(&Motion<SO3, L::Advected>, &Vector3<f64>) -> f64 + Clone {
     move |motion, velocity| {
         let torque = scene.diamond(&Matrix3::identity(), &motion.advected, 1.0);
-        let (rate, _) = Vector3::solve(&scene.inertia(&motion.advected), &(motion.momentum.cross(velocity) + torque));
+        let (rate, _) = Vector3::solve(&inertia(&scene, &motion.advected), &(motion.momentum.cross(velocity) + torque));
         velocity.dot(&rate) / (velocity.norm_squared() + floor * floor)
     }
 }

@@ -3,7 +3,7 @@
 use crate::error::{SetupError, StepError};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor, Vector};
-use crate::motion::{MotionOf, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, SumsOf, explained};
+use crate::motion::{MotionOf, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, Summation, explained};
 use crate::numbers::real;
 use nalgebra::{SimdPartialOrd as _, SimdValue as _};
 
@@ -89,7 +89,12 @@ where
         self.plan.length(scene, motion, kept, is_ahead)
     }
 
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
         let (mut now, mut next) = (*motion.now(), *kept);
         let (start, length) = (self.plan.time(&now, &next), self.plan.length(scene, &now, &next, true));
         let end = self.value::<S>(start + length)?;

@@ -12,7 +12,7 @@ use super::compensated::Compensable;
 use super::densities;
 use crate::error::SetupError;
 use crate::groups::{LieGroup, MatrixGroup, SO3};
-use crate::mechanics::{Inertia, Scene};
+use crate::mechanics::{Inertia, Scene, inertia};
 use crate::methods::{
     CompositionScheme, ExactBody, KineticFlow, ProcessedScheme, SplittingScheme, SymmetricBody, has_force_gradient,
 };
@@ -352,7 +352,7 @@ impl Method {
             (Scheme::Collocation(Stages::Four), _) => Stepper::collocated::<2>(scene, h).map(Stepper::into_any),
             (Scheme::Collocation(Stages::Eight), _) => Stepper::collocated::<4>(scene, h).map(Stepper::into_any),
             _ => {
-                let Ok(inertia) = Inertia::new(scene.inertia(&scene.advected())) else {
+                let Ok(inertia) = Inertia::new(inertia(&scene, &scene.advected())) else {
                     return refused(
                         "is for the inertia of a body; give a positive one, no moment of which is above the sum of the others",
                     );
@@ -430,7 +430,7 @@ where
 impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for SO3 {
     fn schemes(scene: &S) -> Vec<Scheme> {
         // The schemes of one body on SO(3) need a physical, constant inertia and a separable Lagrangian.
-        let Ok(inertia) = Inertia::new(scene.inertia(&scene.advected())) else { return Vec::new() };
+        let Ok(inertia) = Inertia::new(inertia(scene, &scene.advected())) else { return Vec::new() };
         let body = ExactBody::new(&inertia);
         if Stepper::split(scene.clone(), 1.0, body, SplittingScheme::STRANG).is_err() {
             return Vec::new();

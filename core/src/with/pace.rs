@@ -6,7 +6,7 @@ use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, Retraction as _};
 use crate::mechanics::{Effect, Group, SceneVisitor, Vector, energy};
 use crate::motion::{
-    ElapsedTime, Guess, Motion, MotionOf, OwnStep, Plan, PlanFacts, Runs, StepReport, Stepper, SumsOf,
+    ElapsedTime, Guess, Motion, MotionOf, OwnStep, Plan, PlanFacts, Runs, StepReport, Stepper, Summation,
 };
 use crate::numbers::{History as _, Polynomial};
 
@@ -122,7 +122,12 @@ impl<S: Effect<Scalar = f64>, P: Pacable<S>> Plan<S> for PacedStep<P> {
     }
 
     #[hot]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
         let energy = scene.with_energy(&motion.now().advected, 0.0);
         let (inner, (memory, history)) = kept;
         let last = P::guess(inner).half;

@@ -5,7 +5,7 @@
 
 use crate::error::{SetupError, StepError};
 use crate::mechanics::{Effect, Group, Scalar, SceneVisitor};
-use crate::motion::{Plan, Remedy, Steerable, StepReport, Stepper, Summation, SumsOf, Variable};
+use crate::motion::{Plan, Remedy, Steerable, StepReport, Stepper, Summation, Variable};
 use crate::numbers::real;
 
 /// A plan that divides a step without a solution into equal parts, by [`Stepper::or_substeps`].
@@ -65,7 +65,12 @@ impl<S: Effect, P: Plan<S>> Plan<S> for Substeps<P> {
     }
 
     #[hot]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
         match self.plan.step(scene, motion, kept) {
             Ok(report) => Ok(report),
             Err(error) => in_parts(&self.plan, scene, (motion, kept), (self.at_most, error)),

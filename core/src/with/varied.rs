@@ -1,8 +1,8 @@
 //! Steps of varying length by one method.
 
 use crate::error::{SetupError, StepError};
-use crate::mechanics::{Effect, SceneVisitor, Vector};
-use crate::motion::{Kept, MotionOf, Plan, PlanFacts, Runs, StepReport, Stepper, SumsOf, Variable};
+use crate::mechanics::{Effect, Group, SceneVisitor, Vector};
+use crate::motion::{Kept, MotionOf, Plan, PlanFacts, Runs, StepReport, Stepper, Summation, Variable};
 
 /// A rule for the length of each step.
 pub trait Lengths<S: Effect>: Clone {
@@ -100,7 +100,12 @@ impl<S: Effect<Scalar = f64>, P: Variable<S>, L: Lengths<S>> Plan<S> for VariedS
     }
 
     #[hot]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
         let length = self.checked(scene, motion.now(), kept, true)?;
         let report = self.plan.step_of(scene, motion, &mut kept.0, length)?;
         motion.count();

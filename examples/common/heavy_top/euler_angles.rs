@@ -1,6 +1,6 @@
 //! The symmetric top in Euler angles, \[RDAE, section 3.1\]: a rival with a singularity where the axis is vertical.
 
-use liestep::mechanics::{Effect as _, Term as _};
+use liestep::mechanics::{Term as _, inertia};
 use nalgebra::{Matrix3, Rotation3, Vector3, Vector6};
 
 use super::declaration::HeavyTop;
@@ -58,7 +58,7 @@ pub struct SymmetricTop {
 impl SymmetricTop {
     /// The constants of a top with equal first two moments and its centre of mass on the third axis.
     pub fn of(top: &HeavyTop) -> Self {
-        let moments = top.inertia(&top.advected()).diagonal();
+        let moments = inertia(top, &top.advected()).diagonal();
         Self { across: moments.x, along: moments.z, weight: top.m * top.g * top.rho.z }
     }
 

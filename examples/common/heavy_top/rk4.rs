@@ -4,7 +4,7 @@
 //! the origin of the equations: those in quaternions are written by hand, the others derived.
 
 use liestep::SO3;
-use liestep::mechanics::{Effect as _, Term as _};
+use liestep::mechanics::{Term as _, inertia};
 use liestep::motion::RightHandSide;
 use nalgebra::{Matrix3, Matrix3x4, UnitQuaternion, Vector3};
 
@@ -25,7 +25,7 @@ pub struct Body {
 impl Body {
     /// The body and the weight of the declared top.
     pub fn of(top: &HeavyTop) -> Self {
-        let inverse_moments = top.inertia(&top.advected()).diagonal().map(f64::recip);
+        let inverse_moments = inertia(top, &top.advected()).diagonal().map(f64::recip);
         Self { inverse_moments, lever: top.rho * (top.m * top.g) }
     }
 }

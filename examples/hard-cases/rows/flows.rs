@@ -1,7 +1,7 @@
 //! P5: two forms of the flow, and two forms of the scene.
 
 use declarations::{FreeBody, FullTop, Motion};
-use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::mechanics::{DiscreteLagrangian, Regular, inertia};
 use liestep::motion::{DiscreteEulerPoincare, reconstruct};
 use liestep::numbers::Entries as _;
 use liestep::prelude::*;
@@ -42,7 +42,7 @@ where
         let momentum = lagrangian.legendre_minus(&f.matrix(), &w, h);
         error = greater(
             error,
-            (momentum - state.momentum()).norm() * h / lagrangian.inertia(&lagrangian.advected()).norm(),
+            (momentum - state.momentum()).norm() * h / inertia(lagrangian, &lagrangian.advected()).norm(),
         );
         let (mut apart, mut size) = (0.0, 1.0);
         let _ = w.zip(&state.advected(), &mut |a, b| {

@@ -7,6 +7,7 @@
 //! away; the variant with such a step in every thousand shows the effect of taking more.
 
 use declarations::{HeavyTop, Motion};
+use liestep::mechanics::inertia;
 use liestep::methods::{CompositionScheme, SplittingScheme, SymmetricBody};
 use liestep::motion::Plan;
 use liestep::prelude::*;
@@ -72,7 +73,7 @@ pub(crate) fn r1(effort: Effort) -> Result<Row, Failure> {
 pub(crate) fn r2(effort: Effort) -> Result<Row, Failure> {
     let steps = effort.steps(1_000_000, 10_000_000);
     let motion = Motion::looping();
-    let kinetic = SymmetricBody::new(&Inertia::new(motion.top.inertia(&motion.top.advected()))?)?;
+    let kinetic = SymmetricBody::new(&Inertia::new(inertia(&motion.top, &motion.top.advected()))?)?;
     let splitting = Stepper::split(motion.top, 0.02, kinetic, SplittingScheme::NYSTROM_11)?;
     let row = Row::new(
         "R2",

@@ -3,7 +3,7 @@
 //! The thresholds are those of `f64` in units of epsilon: 10⁻¹⁴ is 45 ε, 10⁻¹³ is 450 ε.
 
 use declarations::Motion;
-use liestep::mechanics::{DiscreteLagrangian, InertiaError, Regular, Sum};
+use liestep::mechanics::{DiscreteLagrangian, InertiaError, Regular, Sum, inertia};
 use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::{Tenths, four_halvings, greater, order, relative, steps_in};
@@ -29,7 +29,7 @@ where
 {
     // The inertia is that of the program after rounding, and the measurement is in double precision, whose rounding is
     // negligible.
-    let inverse = body.inertia(&body.advected()).cast::<f64>().try_inverse().ok_or("a singular inertia")?;
+    let inverse = inertia(&body, &body.advected()).cast::<f64>().try_inverse().ok_or("a singular inertia")?;
     let stepper = Stepper::new(body, single(h))?;
     let mut state = stepper.start(SO3::identity(), Vector3::from(velocity).cast::<f32>())?;
     let kept = |state: &liestep::motion::Motion<SO3<f32>, ()>| {

@@ -2,7 +2,7 @@
 
 use declarations::{FreeBody, HeavyTop};
 use liestep::groups::Retraction as _;
-use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::mechanics::{DiscreteLagrangian, Regular, inertia};
 use liestep::motion::DiscreteLiePoisson;
 use liestep::{SO3, StepError};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -36,7 +36,7 @@ impl Tally {
     {
         let flow = DiscreteLiePoisson::new(lagrangian.clone(), STEP)?;
         for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-            let momentum = lagrangian.inertia(&lagrangian.advected()) * axis * (0.5 / STEP);
+            let momentum = inertia(lagrangian, &lagrangian.advected()) * axis * (0.5 / STEP);
             let off = |found: &SO3| (found.log() - axis * 30.0_f64.to_radians()).norm();
             let guess = |degrees: f64| L::Retraction::local_coordinates(&rotation(&axis, degrees)).ok_or("half a turn");
             self.traps += 1;

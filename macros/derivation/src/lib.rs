@@ -32,5 +32,5 @@ pub use emit::{hot, lanes};
 pub use expand::{expand, matrix_group};
 pub use staged::{
     Action, Array, Carried, Constraint, Constraints, Factor, Function, MOST_WORK, Operation, Parameter, ParameterKind,
-    Program, Refusal, Source, StagedDeclaration, Stages, staged,
+    Program, Refusal, Source, StagedDeclaration, Stages, Variance, staged,
 };

@@ -3,6 +3,7 @@
 
 use liestep::groups::LieGroup as _;
 use liestep::laws::samples::Random;
+use liestep::mechanics::inertia;
 use liestep::motion::DiscreteLiePoisson;
 
 use super::numbers::numbers;
@@ -22,7 +23,7 @@ pub fn error_of_return<L: System + Clone>(lagrangian: &L, h: f64, seed: u64) -> 
         let there = step(&forth, &momentum, &w);
         let returned = step(&back, &there.momentum, &there.advected);
         // The rounding error is that of the terms of `μ`, which are of the order of `J/h` times the increment.
-        let inertia = norm_of_map::<L>(&lagrangian.inertia(&lagrangian.advected()));
+        let inertia = norm_of_map::<L>(&inertia(lagrangian, &lagrangian.advected()));
         let size = inertia * norm(&velocity) + norm(&momentum);
         let before = numbers(&w);
         let missed = (numbers(&returned.advected) - &before).norm();

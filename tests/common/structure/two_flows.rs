@@ -2,6 +2,7 @@
 
 use liestep::groups::LieGroup as _;
 use liestep::laws::samples::Random;
+use liestep::mechanics::inertia;
 use liestep::motion::{DiscreteEulerPoincare, DiscreteLiePoisson, reconstruct};
 
 use super::numbers::{from_numbers, numbers};
@@ -29,7 +30,7 @@ pub fn parting<L: System + Clone>(l: &L, h: f64, steps: u32, seed: u64) -> f64 {
         by_increments = reconstruct(&by_increments, &f);
         (f, w) = on_increments.step(&f, &w).unwrap();
         let apart = norm(&(l.legendre_minus(&f.matrix(), &w, h) - momentum));
-        let inertia = norm_of_map::<L>(&l.inertia(&l.advected()));
+        let inertia = norm_of_map::<L>(&inertia(l, &l.advected()));
         let (place, parameters) = (numbers(&by_momenta.matrix()), numbers(&seen));
         worst = worst
             .max(apart / (inertia / h + norm(&momentum)))

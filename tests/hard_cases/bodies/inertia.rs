@@ -2,7 +2,7 @@
 
 use checks::random::Random;
 use declarations::{FreeBody, HeavyTop};
-use liestep::mechanics::{DiagonalNonstandardInertia, Effect as _, Inertia, InertiaError};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, InertiaError, inertia};
 use liestep::{NonstandardInertia, SO3, SetupError, Stepper};
 use nalgebra::{Matrix3, Vector3};
 use workbench::measure::relative;
@@ -28,7 +28,7 @@ fn conversions_agree_with_the_integrals() {
         assert!(relative(j_d.to_inertia().as_matrix(), &ordinary) < 1e-15);
         assert!(relative(j.to_nonstandard().as_matrix(), &nonstandard) < 2e-15);
         assert!(relative(j_d.to_inertia().to_nonstandard().as_matrix(), &nonstandard) < 2e-15);
-        assert!(relative(&FreeBody { J_d: j_d }.inertia(&()), &ordinary) < 1e-15);
+        assert!(relative(&inertia(&FreeBody { J_d: j_d }, &()), &ordinary) < 1e-15);
     }
 }
 

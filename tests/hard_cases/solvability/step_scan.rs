@@ -4,7 +4,7 @@
 
 use checks::random::Random;
 use declarations::{FullTop, HeavyTop};
-use liestep::mechanics::{DiscreteLagrangian, Regular};
+use liestep::mechanics::{DiscreteLagrangian, Regular, inertia};
 use liestep::motion::DiscreteLiePoisson;
 use liestep::prelude::*;
 use nalgebra::Vector3;
@@ -31,7 +31,7 @@ where
     let momentum = direction * 30.0;
     let fold = DiscreteLiePoisson::new(top.clone(), 1.0).unwrap().max_step(&momentum, w);
     let a = momentum + L::kick_before(&top.constants(fold), w);
-    let moments = top.inertia(&top.advected()).symmetric_eigenvalues();
+    let moments = inertia(top, &top.advected()).symmetric_eigenvalues();
     let size = fold * a.norm();
     // The bisection has six digits.
     assert!(size > moments.min() * 0.999_99 && size < moments.max() * 1.000_01, "{size} is outside {moments}");

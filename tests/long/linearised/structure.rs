@@ -2,7 +2,7 @@
 
 use liestep::effects::{Gravity, PrincipalBody};
 use liestep::gradients::{Cotangent, Gradient, Linearisable, Tape};
-use liestep::mechanics::{DiagonalNonstandardInertia, Effect, Inertia, Sum, Term as _};
+use liestep::mechanics::{DiagonalNonstandardInertia, Inertia, Sum, Term as _, inertia};
 use liestep::methods::{
     CompositionScheme, ExactBody, ProcessedScheme, ProcessedSplitting, Splitting, SplittingScheme, SymmetricBody,
 };
@@ -66,7 +66,7 @@ fn processed(scheme: ProcessedScheme, h: f64) -> Stepper<Top, ProcessedSplitting
 }
 
 fn exact_body(scene: &Top) -> ExactBody {
-    ExactBody::new(&Inertia::new(Effect::inertia(scene, &scene.advected())).expect("a body"))
+    ExactBody::new(&Inertia::new(inertia(scene, &scene.advected())).expect("a body"))
 }
 
 /// Both flows are the motion of a symmetric body, by independent formulas.

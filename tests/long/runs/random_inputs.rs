@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use checks::random::Random;
 use declarations::HeavyTop;
-use liestep::mechanics::InertiaError;
+use liestep::mechanics::{InertiaError, inertia};
 use liestep::motion::Solvability;
 use liestep::prelude::*;
 use nalgebra::{Matrix3, Vector3};
@@ -260,7 +260,7 @@ fn outcome(inputs: &mut Inputs) -> &'static str {
     };
     assert!(h.is_finite() && finite(&[m, g]) && finite(top.rho.as_slice()) && finite(top.up.as_slice()));
 
-    let inertia = top.inertia(&top.advected());
+    let inertia = inertia(&top, &top.advected());
     let attitude = inputs.attitude();
     // The turns are a thousandth to ten times the largest solvable one.
     let size = inertia.amax() / h.abs().max(1e-6) * inputs.between(1e-3, 10.0);

@@ -20,8 +20,8 @@ fn its_scenes_run() {
     let several = blocks.iter().find(|block| block.contains("[[body]]")).unwrap();
     liestep_scene::Scene::parse("README.md", several).unwrap().run().unwrap();
     let varied = liestep_scene::Scene::parse("README.md", &format!("{scene}{more}")).unwrap();
-    assert_eq!(varied.sweep().unwrap().points.len(), 6);
-    assert_eq!(varied.events().collect::<Vec<_>>(), ["fallen"]);
+    assert_eq!(varied.sweep().unwrap().points.len(), 4);
+    assert_eq!(varied.events().collect::<Vec<_>>(), ["low"]);
     varied.first(100).unwrap();
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use liestep::__private::{MAX_ITERATIONS, SETTLED, has_sufficed, may_suffice};
 use liestep::StepError;
-use liestep::motion::{Abreast, AnyStepper, Joinable};
+use liestep::motion::{Abreast, AnyStepper};
 use liestep::numbers::Mask;
 use liestep_derivation::Array;
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdValue as _};
@@ -48,16 +48,14 @@ impl<B: BackendInLanes> Whole<B> {
     /// A stepper whose bodies can be stepped in lanes, if they share the declaration and make single steps.
     #[must_use]
     pub fn into_joinable(self) -> AnyStepper {
-        AnyStepper::joinable(self)
+        AnyStepper::joinable(self, LANES, Bodies::of)
     }
 }
 
-impl<B: BackendInLanes> Joinable for Whole<B> {
-    const MOST: usize = LANES;
-
-    fn join(bodies: &[(&Self, &[f64])]) -> Option<Box<dyn Abreast>> {
+impl<B: BackendInLanes> Bodies<B> {
+    fn of(bodies: &[(&Whole<B>, &[f64])]) -> Option<Box<dyn Abreast>> {
         let ((first, state), all) = (bodies.first()?, || bodies.iter());
-        let is_alike = |(stepper, own): &(&Self, &[f64])| {
+        let is_alike = |(stepper, own): &(&Whole<B>, &[f64])| {
             Arc::ptr_eq(&first.codes, &stepper.codes) && own.len() == state.len() && own.last() == state.last()
         };
         let can_join = bodies.len() <= LANES && state.len() == first.codes.sizes.state() && bodies.iter().all(is_alike);
@@ -73,7 +71,7 @@ impl<B: BackendInLanes> Joinable for Whole<B> {
         let code = &first.codes.code;
         let outputs = [code.target.outputs, code.iterate.outputs, code.again.outputs, code.finish.outputs];
         let room = first.codes.sizes.n + 2 * first.codes.sizes.dets + outputs.iter().sum::<usize>();
-        Some(Box::new(Bodies {
+        Some(Box::new(Self {
             steppers: all().map(|(stepper, _)| (*stepper).clone()).collect(),
             errors: vec![None; bodies.len()],
             running,

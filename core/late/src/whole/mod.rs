@@ -16,10 +16,9 @@
 //! Deliberately not here: joints and systems. They are typed, and behind the same
 //! [`Propagator`](liestep::motion::Propagator). Methods of SO(3) alone are the library's own, by a scene that runs programs.
 //!
-//! The files depend on each other in one direction: `{abreast, plant → {algebra, inputs}} → stepper`,
+//! The files depend on each other in one direction: `{abreast, plant → {algebra, forwards, inputs}} → stepper`,
 //! `methods → {collocation, compensated, hamiltonian, rotating, density}`,
 //! `{collocation, compensated, hamiltonian} → stepper`,
-//! `steered → {plant, forwards}`,
 //! `{density, forwards → {derivatives → tape, tangent} → {varied → course, slopes → limit}, pace} → {stepper, lengths}`,
 //! `inputs → {tangent → composed, limit}` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
 //! {codes, linear}`.
@@ -49,7 +48,6 @@ mod plant;
 mod rotating;
 mod signal;
 mod slopes;
-mod steered;
 mod step;
 mod stepper;
 mod tangent;
@@ -64,6 +62,5 @@ pub use inputs::Transition;
 pub use methods::{Question, QuestionError, for_accuracy, layout, stepper};
 pub use pace::Paced;
 pub use signal::{Between, Signal, SignalError};
-pub use steered::Steered;
 pub use stepper::{Whole, WholeError};
 pub use varied::Varied;

@@ -6,13 +6,49 @@ use liestep::{SetupError, StepError};
 use nalgebra::DMatrix;
 
 use super::algebra::{adjoint, displaced, displacement, tangent};
-use super::stepper::Whole;
+use super::stepper::{Whole, check_length};
 use super::tangent::TangentCode;
 use crate::code::Backend;
 
-/// An attitude has the matrices of its factors, row by row; an input is a force in the body frame, or empty. Where there are
-/// constraints on velocities, neighbouring states satisfy them: reactions take up the rest of a change of the momentum, on
-/// which no step depends.
+impl<B: Backend<f64>> Whole<B> {
+    /// The stepper whose inputs as a [`Plant`] are the numbers of the parameters at these places, which hold for a step: the
+    /// thrusts of a declared force, the length of a pendulum, a field.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Length`] if there is no number at a place.
+    pub fn steered(&self, places: Vec<usize>) -> Result<Self, SetupError> {
+        let (all, most) = (self.numbers().len(), places.iter().copied().max());
+        if most.is_some_and(|most| most >= all) {
+            check_length("inputs", self.numbers(), most.unwrap_or(0) + 1)?;
+        }
+        Ok(Self { inputs: Some(places.into()), ..self.clone() })
+    }
+
+    /// The numbers of all parameters with an input; none stands for the parameters' own values.
+    fn numbers_with(&self, places: &[usize], input: &[f64]) -> Vec<f64> {
+        let mut numbers = self.numbers().to_vec();
+        for (place, value) in places.iter().zip(input) {
+            numbers[*place] = *value;
+        }
+        numbers
+    }
+
+    /// A step with these values of parameters, and its derivatives.
+    fn steered_transition(&self, state: &mut [f64], places: &[usize], input: &[f64]) -> Result<Both, StepError> {
+        let numbers = self.numbers_with(places, input);
+        let whole = self.with(&numbers, self.h).ok();
+        let derivatives = whole.and_then(|whole| whole.derivatives().ok());
+        let places = if input.is_empty() { &[] } else { places };
+        let both = derivatives.ok_or(StepError::NonFinite { what: "derivative" })?.of_step(state, places)?;
+        self.step_with(state, &numbers)?;
+        Ok(both)
+    }
+}
+
+/// An attitude has the matrices of its factors, row by row; an input is a force in the body frame, of a
+/// [steered](Whole::steered) stepper the values of its parameters, or empty. Where there are constraints on velocities,
+/// neighbouring states satisfy them: reactions take up the rest of a change of the momentum, on which no step depends.
 impl<B: Backend<f64>> Plant for Whole<B> {
     type State = Box<[f64]>;
     type Motion = [f64];
@@ -33,6 +69,10 @@ impl<B: Backend<f64>> Plant for Whole<B> {
     }
 
     fn check(&self) -> Result<(), SetupError> {
+        if self.inputs.is_some() {
+            let cause = "has no derivatives of steps by parameters: the declaration is too large";
+            return self.derivatives().map(|_| ()).map_err(|_| SetupError::Method { cause });
+        }
         let cause = "has no derivatives of steps as long as this one";
         TangentCode::<B>::of(self.declaration()).map(|_| ()).map_err(|_| SetupError::Method { cause })
     }
@@ -41,8 +81,10 @@ impl<B: Backend<f64>> Plant for Whole<B> {
         Vec::new()
     }
 
+    /// No force, or the values that the parameters have.
     fn force(&self) -> Vec<f64> {
-        vec![0.0; self.codes.sizes.n]
+        let values = |places: &[usize]| places.iter().map(|&place| self.numbers[place]).collect();
+        self.inputs.as_deref().map_or_else(|| vec![0.0; self.codes.sizes.n], values)
     }
 
     fn motion(state: &Box<[f64]>) -> &[f64] {
@@ -66,6 +108,9 @@ impl<B: Backend<f64>> Plant for Whole<B> {
     }
 
     fn step(&self, state: &mut Box<[f64]>, force: &Vec<f64>) -> Result<(), StepError> {
+        if let Some(places) = &self.inputs {
+            return self.step_with(state, &self.numbers_with(places, force)).map(|_| ());
+        }
         if force.is_empty() {
             return liestep::motion::Propagator::step(self, state).map(|_| ());
         }
@@ -73,6 +118,9 @@ impl<B: Backend<f64>> Plant for Whole<B> {
     }
 
     fn transition(&self, state: &mut Box<[f64]>, force: &Vec<f64>) -> Result<Both, StepError> {
+        if let Some(places) = &self.inputs {
+            return self.steered_transition(state, places, force);
+        }
         let none = self.force();
         let found = Self::transition(self, state, if force.is_empty() { &none } else { force })?;
         Ok([found.by_state, if force.is_empty() { Vec::new() } else { found.by_force }])

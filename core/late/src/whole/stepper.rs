@@ -62,12 +62,14 @@ pub struct Whole<B: Backend<f64> = Interpreter> {
     pub(super) h: f64,
     pub(super) method: Method,
     pub(super) stages: Stages,
+    /// The places of the parameters that are inputs of the [`Plant`](liestep::gradients::Plant); none for forces.
+    pub(super) inputs: Option<Arc<[usize]>>,
 }
 
 impl<B: Backend<f64>> Clone for Whole<B> {
     fn clone(&self) -> Self {
         let (codes, numbers, stages) = (Arc::clone(&self.codes), Arc::clone(&self.numbers), self.stages.clone());
-        Self { codes, numbers, h: self.h, method: self.method, stages }
+        Self { codes, numbers, h: self.h, method: self.method, stages, inputs: self.inputs.clone() }
     }
 }
 
@@ -113,7 +115,7 @@ impl<B: Backend<f64>> Whole<B> {
     /// The errors of [`Stepper::new`](liestep::Stepper::new).
     pub fn with(&self, numbers: &[f64], h: f64) -> Result<Self, SetupError> {
         check_length("parameters", numbers, self.numbers.len())?;
-        Self::shared(&self.codes, numbers.into(), h, self.method)
+        Ok(Self { inputs: self.inputs.clone(), ..Self::shared(&self.codes, numbers.into(), h, self.method)? })
     }
 
     fn shared(codes: &Arc<Codes<B>>, numbers: Arc<[f64]>, h: f64, method: Method) -> Result<Self, SetupError> {
@@ -130,7 +132,7 @@ impl<B: Backend<f64>> Whole<B> {
             return Err(SetupError::Method { cause });
         }
         let stages = Stages::of(codes, &numbers, h, scheme)?;
-        Ok(Self { codes: Arc::clone(codes), numbers, h, method, stages })
+        Ok(Self { codes: Arc::clone(codes), numbers, h, method, stages, inputs: None })
     }
 
     /// The declaration.

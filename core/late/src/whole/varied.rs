@@ -150,7 +150,8 @@ impl<B: Backend<f64>> Varied<B> {
         let own = |&[_, share]: &[f64; 2]| -> Result<Whole<B>, SetupError> {
             let (codes, h) = (Arc::clone(&self.whole.codes), self.whole.h * share);
             let stages = Stages::of(&codes, &self.whole.numbers, h, None)?;
-            Ok(Whole { codes, numbers: self.whole.numbers.to_vec().into(), h, method: Method::default(), stages })
+            let (numbers, method) = (self.whole.numbers.to_vec().into(), Method::default());
+            Ok(Whole { codes, numbers, h, method, stages, inputs: None })
         };
         let stages = self.stages.iter().map(own).collect::<Result<_, _>>()?;
         let state = vec![0.0; self.whole.codes.sizes.state()];

@@ -9,7 +9,7 @@ use super::link::Link;
 use crate::error::{SetupError, StepError};
 use crate::groups::{CayleyRetraction, Retraction, SO3};
 use crate::mechanics::{Effect, Operations, SceneVisitor};
-use crate::motion::{Cost, Motion, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, Summation, SumsOf, Variable};
+use crate::motion::{Cost, Motion, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, Summation, Variable};
 use crate::numbers::{
     Bodies, Columns, Coordinates as _, OnRegisters, Plain, Register, Vectors, cross, filled, on_registers, padded,
     square, vector,
@@ -314,7 +314,12 @@ where
     }
 
     #[hot]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
+    fn step<M: Summation<[SO3; N], S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
         on_registers(Step(self, scene, motion, kept))
     }
 
@@ -358,7 +363,7 @@ pub(super) struct Step<'a, S, P, M, K>(pub(super) &'a P, pub(super) &'a S, pub(s
 impl<S, M, const N: usize> OnRegisters for Step<'_, S, LinkedBodies<S, N>, M, WarmStart<Components<N>>>
 where
     S: Effect<Scalar = f64, Group = [SO3; N]>,
-    M: SumsOf<S>,
+    M: Summation<[SO3; N], S::Advected>,
 {
     type Output = Result<StepReport, StepError>;
 

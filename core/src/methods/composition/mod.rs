@@ -11,7 +11,7 @@ use crate::gradients::{ChangeOf, Linearisable, Pass, Stage as Linear};
 use crate::groups::Advected as _;
 use crate::mechanics::{Effect, Group, Regular, Scalar, SceneVisitor, SecondDerivatives, Vector};
 use crate::motion::{
-    Cost, MotionOf, OwnStep, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, SumsOf, Variable, explained,
+    Cost, MotionOf, OwnStep, Plan, PlanFacts, Runs, Steerable, StepReport, Stepper, Summation, Variable, explained,
     half_coordinates,
 };
 use crate::numbers::{Coordinates, Mask, Real, real};
@@ -154,7 +154,7 @@ impl<S: Effect> Composition<S> {
 
     /// Makes a step. Before each stage `see` is shown the motion, and the begin and the length of the stage as shares of the step.
     #[hot]
-    fn each<M: SumsOf<S>>(
+    fn each<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
         motion: &mut M,
@@ -245,7 +245,12 @@ impl<S: Effect> Plan<S> for Composition<S> {
 
     /// The report's iterations are the sum over all stages.
     #[hot]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
         self.each(scene, motion, kept, &mut |_, _| Ok(()))
     }
 

@@ -15,13 +15,13 @@ pub use settling::{Changes, Next};
 pub use state::CollocationMemory;
 
 use lift::{Lift, PhasePoint, length_squared};
-use stages::{Stages, WeightedRates};
+use stages::Stages;
 
 use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::mechanics::{DiscreteLagrangian, Effect, Regular, RigidScene, SceneVisitor, constant_inertia};
 use crate::methods::splitting::torque;
-use crate::motion::{Cost, Motion, OwnStep, Plan, PlanFacts, Runs, Stepper, Summation, SumsOf, Variable};
+use crate::motion::{Cost, Motion, OwnStep, Plan, PlanFacts, Runs, Stepper, Summation, Variable};
 use crate::numbers::{Vectors, two_sum};
 use nalgebra::Vector3;
 
@@ -138,9 +138,9 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Gauss<S, PAIRS> {
         let CollocationMemory { lifted: y, carry, stages } = &*kept;
         let mut stages = match stages {
             Some(stages) => stages.continued(&self.coefficients),
-            None => Stages::constant(y, self),
+            None => Stages::constant(y, (&self.lift, &self.weights)),
         };
-        let iterations = stages.solve(&self.coefficients, (y, carry), self)?;
+        let iterations = stages.solve(&self.coefficients, (y, carry), (&self.lift, &self.weights))?;
         let (next, left) = compensated(y, &stages.change(), carry);
         if !next.iter().all(|component| component.is_finite()) {
             return Err(StepError::NonFinite { what: "momentum after the step" });
@@ -185,7 +185,13 @@ impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> Plan<S> for Gauss<S, PAIRS
     /// Attitude and momentum are computed from the quaternion only after the last step. The step fails with
     /// [`StepError::NotConverged`] if it is too long for the iteration.
     #[inline(always)]
-    fn run<M: SumsOf<S>>(&self, _: &S, motion: &mut M, kept: &mut Self::Kept, steps: u64) -> Result<u64, StepError> {
+    fn run<M: Summation<SO3, S::Advected>>(
+        &self,
+        _: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+        steps: u64,
+    ) -> Result<u64, StepError> {
         let mut iterations = 0;
         for _ in 0..steps {
             iterations += u64::from(self.advance(kept)?);
@@ -226,13 +232,6 @@ const OF_A_SUM: f64 = 5.0;
 /// Operations of a step besides its iterations, and those per pair of pairs in the initial guess.
 const OF_AN_UPDATE: f64 = 33.0;
 const OF_A_GUESS: f64 = 21.0;
-
-impl<S: RigidScene<Scalar = f64>, const PAIRS: usize> WeightedRates for Gauss<S, PAIRS> {
-    #[inline(always)]
-    fn weighted_rate(&self, stage: usize, place: &PhasePoint) -> PhasePoint {
-        self.lift.weighted_rate(place, self.weights.as_flattened()[stage])
-    }
-}
 
 /// The rounded sum `y + (change + carry)`, and its rounding error.
 ///

@@ -3,9 +3,10 @@
 //! A component's values at all stages are contiguous, so that the compiler vectorises over stages.
 
 use super::coefficients::{Coefficients, Columns, OfStages};
-use super::lift::PhasePoint;
+use super::lift::{Lift, PhasePoint};
 use super::settling::{Changes, MOST_ITERATIONS, Next};
 use crate::error::StepError;
+use crate::mechanics::RigidScene;
 roots!();
 
 /// One number per component and stage.
@@ -21,20 +22,18 @@ fn each<T>(value: impl Fn(usize) -> T) -> [T; 8] {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stages<const PAIRS: usize>(pub(super) Numbers<PAIRS>);
 
-/// The equations of motion that the iteration evaluates.
-///
-/// A trait is inlined where a closure isn't always, and code that isn't inlined isn't vectorised.
-pub(super) trait WeightedRates {
-    /// The increment `h b_j f(Y_j)` of the stage `j` at the point `Y_j`; marked `#[inline(always)]`.
-    fn weighted_rate(&self, stage: usize, place: &PhasePoint) -> PhasePoint;
-}
+/// The equations of motion, and the weights `h b_j` of the stages.
+pub(super) type Equations<'a, L, const PAIRS: usize> = (&'a Lift<L>, &'a OfStages<PAIRS>);
 
 impl<const PAIRS: usize> Stages<PAIRS> {
     /// Increments with all stages at one point.
-    pub(super) fn constant(place: &PhasePoint, equations: &impl WeightedRates) -> Self {
+    pub(super) fn constant<L: RigidScene<Scalar = f64>>(
+        place: &PhasePoint,
+        (lift, weights): Equations<'_, L, PAIRS>,
+    ) -> Self {
         let mut stages = [[[0.0; PAIRS]; 2]; 8];
         for stage in 0..2 * PAIRS {
-            put(&mut stages, stage, &equations.weighted_rate(stage, place));
+            put(&mut stages, stage, &lift.weighted_rate(place, weights.as_flattened()[stage]));
         }
         Self(stages)
     }
@@ -61,11 +60,11 @@ impl<const PAIRS: usize> Stages<PAIRS> {
     ///
     /// [`StepError::NotConverged`].
     #[inline(always)]
-    pub(super) fn solve(
+    pub(super) fn solve<L: RigidScene<Scalar = f64>>(
         &mut self,
         coefficients: &Coefficients<PAIRS>,
         (y, carry): (&PhasePoint, &PhasePoint),
-        equations: &impl WeightedRates,
+        equations: Equations<'_, L, PAIRS>,
     ) -> Result<u32, StepError> {
         // A body at rest has no momentum before the step. A size too small to invert is ignored.
         let size: f64 = (4..8).map(|k| y[k] * y[k] + self.0[k][0][0] * self.0[k][0][0]).sum();
@@ -92,12 +91,12 @@ impl<const PAIRS: usize> Stages<PAIRS> {
     /// here, because a function that takes a reference to the iterate would force it to memory, and each iteration
     /// would wait for it.
     #[inline(always)]
-    fn iterated(
+    fn iterated<L: RigidScene<Scalar = f64>>(
         &self,
         coefficients: &Coefficients<PAIRS>,
         (y, carry): (&PhasePoint, &PhasePoint),
         over_size: f64,
-        equations: &impl WeightedRates,
+        (lift, weights): Equations<'_, L, PAIRS>,
     ) -> (Self, [f64; 2]) {
         let mut next = [[[0.0; PAIRS]; 2]; 8];
         let mut changes = [[[0.0; PAIRS]; 2]; 2];
@@ -106,7 +105,7 @@ impl<const PAIRS: usize> Stages<PAIRS> {
             let places = each(|component| {
                 y[component] + (carry[component] + entry(&coefficients.places, stage, &self.0[component]))
             });
-            let rate = equations.weighted_rate(stage, &places);
+            let rate = lift.weighted_rate(&places, weights.as_flattened()[stage]);
             let squared = each(|component| {
                 let difference = rate[component] - self.0[component].as_flattened()[stage];
                 difference * difference

@@ -39,7 +39,7 @@ impl Coefficients {
         bodies: &[Option<usize>; 2],
         coupling: Coupling,
         vectors: &[Vector6<f64>; 2],
-        matrix: &Blocks,
+        matrix: &Blocks<2>,
     ) {
         for (side, body) in bodies.iter().enumerate() {
             if let Some(body) = *body {

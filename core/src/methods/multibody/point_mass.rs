@@ -14,7 +14,7 @@ use super::constraint::Place;
 use super::ends::Ends;
 use super::graph::Joint;
 use super::system::Multibody;
-use super::terms::{AtRest, Blocks, BodyTerm, PairTerm, space};
+use super::terms::{AtRest, Blocks, PlacedTerm, space};
 use super::{Body, Increment, parts, place};
 use crate::error::SetupError;
 use crate::groups::{CayleyRetraction, LieGroup as _, Retraction, SO3};
@@ -58,7 +58,7 @@ impl JointInertia {
     }
 
     /// The blocks `Gᵀ K G` of these slopes, times a factor.
-    fn blocks(&self, slopes: &[Matrix6<f64>; 2], factor: f64) -> Blocks {
+    fn blocks(&self, slopes: &[Matrix6<f64>; 2], factor: f64) -> Blocks<2> {
         let weights = Matrix6::from_diagonal(&(self.factors * factor));
         [0, 1].map(|row| [0, 1].map(|column| slopes[row] * weights * slopes[column].transpose()))
     }
@@ -84,12 +84,12 @@ impl JointInertia {
     }
 }
 
-impl PairTerm for JointInertia {
+impl PlacedTerm<2> for JointInertia {
     fn validate(&self) -> Result<(), SetupError> {
         Ok(())
     }
 
-    fn refolded(&self, h: f64) -> Arc<dyn PairTerm> {
+    fn refolded(&self, h: f64) -> Arc<dyn PlacedTerm<2>> {
         Arc::new(Self { joint: self.joint.clone(), factors: self.factors, h })
     }
 
@@ -110,18 +110,27 @@ impl PairTerm for JointInertia {
     }
 
     /// The Jacobian is that for closed joints, to which the iteration converges.
-    fn newton_system(&self, now: [&Body; 2], halves: [&Vector6<f64>; 2]) -> ([Vector6<f64>; 2], Blocks) {
+    fn write_newton(
+        &self,
+        now: [&Body; 2],
+        [_, halves]: [[&Vector6<f64>; 2]; 2],
+        to: (&mut [Vector6<f64>; 2], &mut Blocks<2>),
+    ) {
         let (places, turns) = Self::after(now, halves);
         let slopes = self.slopes(&places, turns);
-        (self.residual(&places, &slopes), self.blocks(&slopes, 2.0 / self.h))
+        (*to.0, *to.1) = (self.residual(&places, &slopes), self.blocks(&slopes, 2.0 / self.h));
     }
 
-    fn newton_residual(&self, now: [&Body; 2], halves: [&Vector6<f64>; 2]) -> [Vector6<f64>; 2] {
+    fn newton_residual(&self, now: [&Body; 2], [_, halves]: [[&Vector6<f64>; 2]; 2]) -> [Vector6<f64>; 2] {
         let (places, turns) = Self::after(now, halves);
         self.residual(&places, &self.slopes(&places, turns))
     }
 
-    fn at_rest(&self, now: [&Body; 2]) -> AtRest<[Vector6<f64>; 2], Blocks> {
+    fn remainder(&self, a: [&Vector6<f64>; 2]) -> [Vector6<f64>; 2] {
+        a.map(|a| *a)
+    }
+
+    fn at_rest(&self, now: [&Body; 2]) -> AtRest<2> {
         let places = now.map(place);
         let slopes = self.slopes(&places, [places[0].attitude, places[1].attitude]);
         (0.0, [Vector6::zeros(); 2], self.blocks(&slopes, 1.0))
@@ -138,8 +147,8 @@ impl PairTerm for JointInertia {
 }
 
 /// The inertia at rest by the terms of a body, at the origin of space.
-fn inertia<'a>(terms: impl Iterator<Item = &'a Arc<dyn BodyTerm>>) -> Matrix6<f64> {
-    terms.map(|term| term.at_rest(&space()).2).fold(Matrix6::zeros(), |sum, part| sum + part)
+fn inertia<'a>(terms: impl Iterator<Item = &'a Arc<dyn PlacedTerm<1>>>) -> Matrix6<f64> {
+    terms.map(|term| term.at_rest([&space()]).2[0][0]).fold(Matrix6::zeros(), |sum, part| sum + part)
 }
 
 /// Whether a body with this inertia has no velocity by its momentum alone.

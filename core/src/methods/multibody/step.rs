@@ -132,7 +132,7 @@ impl MultibodyStepper {
         self.kick(
             kicks,
             between,
-            |term, body| term.kick_before(&now[body]),
+            |term, body| term.kick_before([&now[body]]),
             |pair| self.system.pairs[pair].1.kick_before(self.ends(pair, now, &space)),
         );
         for ((a, momentum), kick) in a.iter_mut().zip(&*momenta).zip(&*kicks) {
@@ -161,7 +161,7 @@ impl MultibodyStepper {
         self.kick(
             kicks,
             between,
-            |term, body| term.kick_after(&increments[body], &next[body]),
+            |term, body| term.kick_after([&increments[body]], [&next[body]]),
             |pair| {
                 let (bodies, term) = &self.system.pairs[pair];
                 let increments = bodies.map(|body| body.map_or(&rest, |body| &increments[body]));

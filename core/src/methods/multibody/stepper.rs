@@ -16,7 +16,7 @@ use super::graph::{Joint, Tree};
 use super::point_mass::is_point_mass;
 use super::state::{Offsets, body_at, layout};
 use super::system::{Multibody, ends};
-use super::terms::{BodyTerm, space};
+use super::terms::{PlacedTerm, space};
 use super::workspace::with_workspace;
 use super::{Body, parts, place};
 use crate::error::{SetupError, StepError};
@@ -319,11 +319,11 @@ impl MultibodyStepper {
         &self,
         kicks: &mut [Vector6<f64>],
         between: &mut [Vector6<f64>],
-        of_body: impl Fn(&dyn BodyTerm, usize) -> Option<Vector6<f64>>,
+        of_body: impl Fn(&dyn PlacedTerm<1>, usize) -> Option<[Vector6<f64>; 1]>,
         of_pair: impl Fn(usize) -> Option<[Vector6<f64>; 2]>,
     ) {
         for (body, kick) in kicks.iter_mut().enumerate() {
-            let parts = self.terms(body).filter_map(|term| of_body(term, body));
+            let parts = self.terms(body).filter_map(|term| of_body(term, body)).map(|[part]| part);
             *kick = parts.reduce(|sum, part| sum + part).unwrap_or_else(Vector6::zeros);
         }
         if self.system.pairs.is_empty() {

@@ -1,6 +1,7 @@
 //! Sums of the terms of a system: residuals and Jacobians of a step, and momenta and inertias of the continuous limit.
 
 use alloc::vec::Vec;
+use core::array::from_mut;
 
 use nalgebra::{Matrix6, Vector6};
 
@@ -10,13 +11,13 @@ use super::elimination::{factorise, solve};
 use super::nodes::{Node, Unknowns, set_blocks};
 use super::stepper::MultibodyStepper;
 use super::system::PlacedPair;
-use super::terms::{BodyTerm, space};
+use super::terms::{PlacedTerm, space};
 use crate::error::SetupError;
 use crate::mechanics::check_inertia;
 use crate::numbers::{BlockDiagonal, Coordinates as _, Pattern};
 
 impl MultibodyStepper {
-    pub(super) fn terms(&self, body: usize) -> impl Iterator<Item = &dyn BodyTerm> {
+    pub(super) fn terms(&self, body: usize) -> impl Iterator<Item = &dyn PlacedTerm<1>> {
         self.system.terms[self.ranges[body].clone()].iter().map(|(_, term)| &**term)
     }
 
@@ -37,7 +38,9 @@ impl MultibodyStepper {
         for &coupling in &self.couplings {
             let (bodies, term) = &self.system.pairs[coupling.pair];
             let halves = bodies.map(|body| body.map_or(&still, |body| &half[body]));
-            let (residuals, matrix) = term.newton_system(self.ends(coupling.pair, now, &space), halves);
+            let (mut residuals, mut matrix) = ([still; 2], [[Matrix6::zeros(); 2]; 2]);
+            let (ends, to) = (self.ends(coupling.pair, now, &space), (&mut residuals, &mut matrix));
+            term.write_newton(ends, [[&still; 2], halves], to);
             coefficients.add(bodies, coupling, &residuals, &matrix);
         }
     }
@@ -57,7 +60,7 @@ impl MultibodyStepper {
         for &Coupling { pair, .. } in &self.couplings {
             let (bodies, term) = &self.system.pairs[pair];
             let halves = bodies.map(|body| body.map_or(&still, |body| &half[body]));
-            let both = term.newton_residual(self.ends(pair, now, &space), halves);
+            let both = term.newton_residual(self.ends(pair, now, &space), [[&still; 2], halves]);
             for (body, residual) in bodies.iter().zip(both) {
                 if let Some(body) = *body {
                     residuals[body] += residual;
@@ -79,14 +82,14 @@ impl MultibodyStepper {
             (*residual, *matrix) = (Vector6::zeros(), Matrix6::zeros());
             return;
         };
-        first.write_newton(now, a, half, (&mut *residual, &mut *matrix));
+        first.write_newton([now], [[a], [half]], (from_mut(&mut *residual), from_mut(from_mut(&mut *matrix))));
         let (mut before, mut left) = (first, None);
         for term in terms {
-            let a = before.remainder(left.as_ref().unwrap_or(a));
-            let (mut of_term, mut part) = (Vector6::zeros(), Matrix6::zeros());
-            term.write_newton(now, &a, half, (&mut of_term, &mut part));
-            *residual += of_term;
-            *matrix += part;
+            let [a] = before.remainder([left.as_ref().unwrap_or(a)]);
+            let (mut of_term, mut part) = ([Vector6::zeros()], [[Matrix6::zeros()]]);
+            term.write_newton([now], [[&a], [half]], (&mut of_term, &mut part));
+            *residual += of_term[0];
+            *matrix += part[0][0];
             (before, left) = (term, Some(a));
         }
     }
@@ -95,8 +98,8 @@ impl MultibodyStepper {
     fn newton_residual(&self, body: usize, now: &Body, a: &Vector6<f64>, half: &Vector6<f64>) -> Vector6<f64> {
         let (mut sum, mut a) = (Vector6::zeros(), *a);
         for term in self.terms(body).filter(|term| term.has_unknown()) {
-            sum += term.newton_residual(now, &a, half);
-            a = term.remainder(&a);
+            sum += term.newton_residual([now], [[&a], [half]])[0];
+            [a] = term.remainder([&a]);
         }
         sum
     }
@@ -116,7 +119,7 @@ impl MultibodyStepper {
     pub(super) fn at_rest(&self, body: usize, now: &Body) -> (f64, Vector6<f64>, Matrix6<f64>) {
         let mut sum = (0.0, Vector6::zeros(), Matrix6::zeros());
         for term in self.terms(body) {
-            let (l, momentum, inertia) = term.at_rest(now);
+            let (l, [momentum], [[inertia]]) = term.at_rest([now]);
             sum = (sum.0 + l, sum.1 + momentum, sum.2 + inertia);
         }
         sum
@@ -128,9 +131,9 @@ impl MultibodyStepper {
             let mut terms = self.terms(body);
             let Some(first) = terms.next() else { continue };
             let (vector, matrix) = (&mut coefficients.vectors[body], &mut coefficients.matrices[body]);
-            (_, *vector, *matrix) = first.at_rest(now);
+            (_, [*vector], [[*matrix]]) = first.at_rest([now]);
             for term in terms {
-                let (_, momentum, inertia) = term.at_rest(now);
+                let (_, [momentum], [[inertia]]) = term.at_rest([now]);
                 *vector += momentum;
                 *matrix += inertia;
             }

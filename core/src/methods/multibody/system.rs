@@ -9,7 +9,7 @@ use super::constraint::Constraint;
 use super::functions::ConstraintFunctions;
 use super::graph::Joint;
 use super::part::BodyPart;
-use super::terms::{BodyTerm, PairTerm, of_body, of_pair};
+use super::terms::{PlacedTerm, placed};
 use crate::error::SetupError;
 use crate::groups::{CayleyRetraction, Pair};
 use crate::mechanics::Effect;
@@ -89,13 +89,13 @@ use crate::mechanics::Effect;
 pub struct Multibody {
     pub(super) bodies: usize,
     /// Each with its body.
-    pub(super) terms: Vec<(usize, Arc<dyn BodyTerm>)>,
+    pub(super) terms: Vec<(usize, Arc<dyn PlacedTerm<1>>)>,
     pub(super) pairs: Vec<PlacedPair>,
     pub(super) joints: Vec<Joint>,
 }
 
 /// A term between two bodies; `None` is space.
-pub(super) type PlacedPair = ([Option<usize>; 2], Arc<dyn PairTerm>);
+pub(super) type PlacedPair = ([Option<usize>; 2], Arc<dyn PlacedTerm<2>>);
 
 impl Multibody {
     /// A system without bodies.
@@ -143,7 +143,7 @@ impl Multibody {
         E::Constants: Send + Sync,
         E::Advected: Send + Sync,
     {
-        self.terms.push((body, of_body(term)));
+        self.terms.push((body, placed(term)));
     }
 
     /// Adds a term between two bodies, or between space, `None`, and a body: a potential, a kinetic energy, or a force by
@@ -213,7 +213,7 @@ impl Multibody {
         E::Constants: Send + Sync,
         E::Advected: Send + Sync,
     {
-        self.pairs.push((bodies, of_pair(term)));
+        self.pairs.push((bodies, placed(term)));
     }
 
     /// Adds a joint between a body above, or space, `None`, and a body below. Errors count joints from zero.

@@ -5,14 +5,14 @@ use nalgebra::{Matrix3, SimdBool as _, Vector3};
 use crate::error::{SetupError, StepError};
 use crate::groups::SO3;
 use crate::groups::rotation_coefficients;
-use crate::mechanics::{DiscreteLagrangian, Effect, Inertia, Operations, Regular, SceneVisitor};
+use crate::mechanics::{DiscreteLagrangian, Effect, Inertia, Operations, Regular, SceneVisitor, inertia};
 use crate::motion::DiscreteLiePoisson;
 use crate::numbers::{Coordinates as _, Real, real, reported};
 
 /// The free body's flow, or a structure-preserving approximation of it.
 ///
 /// The body's properties are associated functions and not methods, because a declared Lagrangian is a flow, too, and
-/// has a method [`inertia`](Effect::inertia) already.
+/// has a method [`describe`](Effect::describe) already.
 pub trait KineticFlow<T: Real>: Clone {
     /// The flow over one share of the step, with its constants folded.
     type Drift: Clone;
@@ -233,7 +233,7 @@ where
     }
 
     fn inertia(flow: &Self) -> Matrix3<T> {
-        Effect::inertia(flow, &())
+        inertia(flow, &())
     }
 
     fn momentum_bias(flow: &Self) -> Vector3<T> {
@@ -260,7 +260,7 @@ where
 pub(crate) fn inverse_inertia<T: Real, L: DiscreteLagrangian<Scalar = T, Group = SO3<T>>>(
     lagrangian: &L,
 ) -> Matrix3<T> {
-    let inertia = lagrangian.inertia(&lagrangian.advected());
+    let inertia = inertia(lagrangian, &lagrangian.advected());
     let column = |k: usize| Vector3::solve(&inertia, &Matrix3::identity().column(k).into_owned()).0;
     Matrix3::from_columns(&[column(0), column(1), column(2)])
 }

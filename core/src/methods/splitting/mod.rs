@@ -26,8 +26,7 @@ use crate::mechanics::{
     DiscreteLagrangian, Effect, Operations, Regular, RigidScene, Scalar, SceneVisitor, Term, constant_inertia,
 };
 use crate::motion::{
-    Cost, Motion, OwnStep, Plan, PlanFacts, Runs, STEPS_BETWEEN_CHECKS, Steerable, Stepper, Summation, SumsOf,
-    Variable, is_due,
+    Cost, Motion, OwnStep, Plan, PlanFacts, Runs, STEPS_BETWEEN_CHECKS, Steerable, Stepper, Summation, Variable, is_due,
 };
 use crate::numbers::{Coordinates, Real, Vectors, count, largest_lane, real, reported};
 use nalgebra::{
@@ -418,7 +417,13 @@ impl<S: RigidScene, K: KineticFlow<Scalar<S>>> Plan<S> for Splitting<S, K> {
 
     /// The last drift of a step and the first of the next are merged.
     #[hot]
-    fn run<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, (): &mut (), steps: u64) -> Result<u64, StepError> {
+    fn run<M: Summation<SO3<Scalar<S>>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        (): &mut (),
+        steps: u64,
+    ) -> Result<u64, StepError> {
         let (mut next, ends) = (*motion, (Some(&self.first), &self.last));
         let iterations = if const { K::OPERATIONS_OF_SPIN > 0 } && self.spin.is_some() {
             self.make_steps::<false, M>(scene, &mut next, ends, steps)?

@@ -3,7 +3,7 @@
 use super::OwnStep;
 use crate::error::StepError;
 use crate::groups::{Advected as _, Retraction as _};
-use crate::mechanics::{Effect, Group, Scalar, Vector};
+use crate::mechanics::{Effect, Group, Scalar, Vector, inertia};
 use crate::motion::limits::{beyond_solvable, kicked};
 use crate::numbers::{Coordinates as _, real, reported};
 use crate::solving::{
@@ -88,7 +88,7 @@ impl<S: Effect> OwnStep<S> {
                     (real::<Scalar<S>>(1.0) + half.dot(&half)).simd_powi(scene.facts().denominators.cast_signed());
                 Some(newton_system::<S>(&constants, &terms, &half).0 * (real::<Scalar<S>>(2.0) / factor))
             };
-            turning_limits::<Group<S>>(&unknown, &scene.inertia(advected))
+            turning_limits::<Group<S>>(&unknown, &inertia(scene, advected))
         };
         at(self.h * real(0.5)).and(at(self.h))
     }

@@ -6,13 +6,13 @@ mod reactions;
 use crate::error::{SetupError, StepError};
 use crate::groups::{Advected as _, LieGroup};
 use crate::mechanics::{
-    Effect, Group, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, pattern,
+    Effect, Group, Regular, Scalar, SceneVisitor, Vector, check_inertia, estimated_velocity, inertia, pattern,
 };
 use crate::motion::increment::Increment;
 use crate::motion::limits::kicked;
 use crate::motion::plan::{Cost, Plan, PlanFacts, Runs, Steerable, Variable};
 use crate::motion::report::StepReport;
-use crate::motion::summation::{Motion, MotionOf, Summation, SumsOf, is_due};
+use crate::motion::summation::{Motion, MotionOf, Summation, is_due};
 use crate::numbers::{Coordinates as _, is_finite, real, reported};
 use crate::solving::{Problem, Root, WarmStart, newton_system, safe, step_terms};
 use nalgebra::{SimdBool as _, SimdPartialOrd as _, SimdRealField as _};
@@ -52,7 +52,7 @@ impl<S: Effect> OwnStep<S> {
             return Err(SetupError::InvalidStep { step: reported(h) });
         }
         if scene.facts().has_constant_inertia {
-            check_inertia::<Group<S>>(&scene.inertia(&scene.advected()))?;
+            check_inertia::<Group<S>>(&inertia(scene, &scene.advected()))?;
         }
         let constants = scene.constants(h);
         if h != real(0.0) && !S::are_finite(&constants) && !S::are_finite(&scene.constants(real(1.0))) {
@@ -114,7 +114,12 @@ impl<S: Effect> OwnStep<S> {
 
     /// The step by the fast path; `None` if anything about it is doubtful.
     #[hot]
-    fn increment_directly<M: SumsOf<S>>(&self, scene: &S, motion: &M, half_guess: &Vector<S>) -> Option<Increment<S>> {
+    fn increment_directly<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &M,
+        half_guess: &Vector<S>,
+    ) -> Option<Increment<S>> {
         // The solve with care has the constraints.
         if const { S::FACTS.constraints > 0 } {
             return None;
@@ -155,7 +160,12 @@ impl<S: Effect> OwnStep<S> {
 
     /// The increment for the solution `F`, with `a = μ + kick_before(w)`.
     #[hot]
-    fn moved<M: SumsOf<S>>(&self, motion: &M, a: &Vector<S>, root: &Root<Group<S>>) -> Increment<S> {
+    fn moved<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        motion: &M,
+        a: &Vector<S>,
+        root: &Root<Group<S>>,
+    ) -> Increment<S> {
         let Root { half, increment, iterations, far } = *root;
         let Motion { momentum, advected, .. } = motion.now();
         // The order of these operations matters: another one changes the times of some scenes by two hundredths, up or
@@ -200,7 +210,7 @@ impl<S: Effect> OwnStep<S> {
             } else if scene.facts().has_constant_inertia {
                 self.safe
             } else {
-                safe(Vector::<S>::factorise_with(&scene.inertia(w), pattern::<S>()).1)
+                safe(Vector::<S>::factorise_with(&inertia(scene, w), pattern::<S>()).1)
             },
         }
     }
@@ -234,7 +244,12 @@ impl<S: Effect> Plan<S> for OwnStep<S> {
     }
 
     #[hot]
-    fn step<M: SumsOf<S>>(&self, scene: &S, motion: &mut M, kept: &mut Self::Kept) -> Result<StepReport, StepError> {
+    fn step<M: Summation<Group<S>, S::Advected>>(
+        &self,
+        scene: &S,
+        motion: &mut M,
+        kept: &mut Self::Kept,
+    ) -> Result<StepReport, StepError> {
         let guess = kept.guess(<Group<S> as LieGroup>::DIMENSION);
         match self.increment_directly(scene, motion, &guess) {
             Some(made) => Ok(taken(scene, motion, kept, &made)),
@@ -272,7 +287,12 @@ impl<S: Effect> OwnStep<S> {
 }
 
 #[hot]
-fn taken<S: Effect, M: SumsOf<S>>(scene: &S, motion: &mut M, kept: &mut Memory<S>, made: &Increment<S>) -> StepReport {
+fn taken<S: Effect, M: Summation<Group<S>, S::Advected>>(
+    scene: &S,
+    motion: &mut M,
+    kept: &mut Memory<S>,
+    made: &Increment<S>,
+) -> StepReport {
     motion.proceed(&made.increment, &made.change, (made.momentum, made.advected));
     kept.follow(made.half, made.far);
     if is_due::<Group<S>>(motion.now().steps) {

@@ -7,7 +7,7 @@ use crate::groups::LieGroup;
 use crate::mechanics::{Effect, Group, Limit, Vector, normals, pattern};
 use crate::motion::increment::Increment;
 use crate::motion::limits::kicked;
-use crate::motion::summation::{Motion, SumsOf};
+use crate::motion::summation::{Motion, Summation};
 use crate::numbers::{Coordinates as _, real};
 use crate::solving::{Root, newton_residual, step_terms};
 use nalgebra::SimdComplexField as _;
@@ -18,7 +18,7 @@ impl<S: Effect> OwnStep<S> {
     /// The reactions before the step are the part of `U − a` along the constraints' covectors. Those after it take the
     /// momentum to a velocity that satisfies the constraints; the next step's would do it otherwise, so they change no
     /// position.
-    pub(super) fn moved_with_reactions<M: SumsOf<S>>(
+    pub(super) fn moved_with_reactions<M: Summation<Group<S>, S::Advected>>(
         &self,
         scene: &S,
         motion: &M,

@@ -4,7 +4,7 @@ use alloc::string::String;
 
 use super::{StateOf, Stepper};
 use crate::groups::SO3;
-use crate::mechanics::{AxiallyInvariant, Effect, LeftInvariant, Scalar, Vector, derivation, energy};
+use crate::mechanics::{DiscreteLagrangian, Effect, LeftInvariant, OneVector, Scalar, Vector, derivation, energy};
 use crate::motion::plan::Plan;
 use crate::motion::summation::MotionOf;
 use crate::solving::Solvability;
@@ -90,9 +90,9 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
     #[must_use]
     pub fn momentum_along_advected(&self, motion: &MotionOf<S>) -> Scalar<S>
     where
-        S: AxiallyInvariant<Group = SO3<Scalar<S>>>,
+        S: DiscreteLagrangian<Group = SO3<Scalar<S>>, Advected: OneVector<Scalar = Scalar<S>>>,
     {
-        motion.momentum.dot(&S::axis(&motion.advected))
+        motion.momentum.dot(&motion.advected.vector())
     }
 }
 

@@ -4,7 +4,7 @@ use super::{StateOf, Stepper};
 use crate::error::SetupError;
 use crate::groups::{Advected, LieGroup};
 use crate::mechanics::{
-    Effect, Group, Scalar, Vector, check_constraints, check_inertia, check_velocity, velocity_of_momentum,
+    Effect, Group, Scalar, Vector, check_constraints, check_inertia, check_velocity, inertia, velocity_of_momentum,
 };
 use crate::motion::kept::Kept;
 use crate::motion::plan::Plan;
@@ -38,7 +38,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         let momentum = self.plan.momentum(&self.scene, &attitude, &velocity, &w);
         if !self.scene.facts().is_quadratic {
             let found = self.plan.velocity(&self.scene, &Motion { attitude, momentum, advected: w, steps: 0 });
-            check_velocity::<Scalar<S>, _>(&velocity, &found, &momentum, &self.scene.inertia(&w))?;
+            check_velocity::<Scalar<S>, _>(&velocity, &found, &momentum, &inertia(&self.scene, &w))?;
         }
         self.start_with_momentum(attitude, momentum)
     }
@@ -61,7 +61,7 @@ impl<S: Effect, P: Plan<S>> Stepper<S, P> {
         }
         let w = self.plan.begun(&self.scene, &attitude, &momentum);
         if !self.scene.facts().has_constant_inertia {
-            check_inertia::<Group<S>>(&self.scene.inertia(&w))?;
+            check_inertia::<Group<S>>(&inertia(&self.scene, &w))?;
         }
         if !self.scene.facts().is_quadratic && !velocity_of_momentum(&self.scene, &momentum, &w).is_finite() {
             return Err(SetupError::NoVelocity);

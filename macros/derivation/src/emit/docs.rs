@@ -3,7 +3,7 @@
 use crate::declared::{AdvectedParameter, Declaration, Factor, Role};
 use crate::judged::{Choice, Equations, Findings, Sureness};
 use crate::mathematics::derive::{Continuous, DeclaredFunction, Derivation, Inverse, SelfAdjointness, View};
-use crate::mathematics::symbolic::{Stage, Variance, covector_text, matrix_text, text, vector_text};
+use crate::mathematics::symbolic::{Space, Stage, covector_text, matrix_text, text, vector_text};
 use crate::program::{Candidate, Graph, Kernel, NodeId, count};
 
 /// A method with its equation.
@@ -271,14 +271,12 @@ pub(super) fn setting(declaration: &Declaration, is_discrete: bool) -> String {
                 };
             }
         };
-        let (space, moved) = match declaration.advected_kind(index).variance() {
-            Variance::Vector => ("V", "F⁻¹ w"),
-            Variance::Covector => ("V*", "Fᵀ w"),
-            Variance::Contravariant => ("V ⊗ V", "F⁻¹ w F⁻ᵀ"),
-            Variance::Covariant => ("V* ⊗ V*", "Fᵀ w F"),
-            Variance::Mixed => ("V ⊗ V*", "F⁻¹ w F"),
-            Variance::Fixed => return format!("    {} is given for each step\n", w.plain_name()),
-        };
+        let variance = declaration.advected_kind(index).variance();
+        let spaces = variance.spaces().into_iter().flatten().map(|space| if space == Space::Own { "V" } else { "V*" });
+        let space = spaces.collect::<Vec<_>>().join(" ⊗ ");
+        let [left, right] = variance.sides([&"F⁻¹", &"F"], |&matrix| if matrix == "F" { "Fᵀ" } else { "F⁻ᵀ" });
+        let Some(left) = left else { return format!("    {} is given for each step\n", w.plain_name()) };
+        let moved = &right.map_or_else(|| format!("{left} w"), |right| format!("{left} w {right}"));
         if is_discrete {
             let moved = with_names(moved, f, &name);
             format!("    {name}⁺ = {f}⁻¹·{name} = {moved} for {name} in {space}\n")

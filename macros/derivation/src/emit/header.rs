@@ -161,12 +161,8 @@ impl Header {
             FieldKind::Given(shape) => return self.given(shape),
             _ => return self.column(size),
         };
-        let name = match variance {
-            Variance::Vector | Variance::Covector | Variance::Fixed => "ContravariantVector",
-            Variance::Contravariant => "ContravariantTensor",
-            Variance::Covariant => "CovariantTensor",
-            Variance::Mixed => "MixedTensor",
-        };
+        let name =
+            Variance::TYPES.iter().find(|(_, own)| *own == variance).map_or("ContravariantVector", |(name, _)| name);
         let (private, scalar, rows) = (&self.private, &self.scalar, Literal::usize_unsuffixed(rows));
         let name = Ident::new(name, Span::mixed_site());
         quote_spanned!(Span::mixed_site()=> #private::#name<#scalar, #rows>)

@@ -79,16 +79,16 @@ pub(super) fn implementation(
             }
             fn kick_after(_: &Self::Constants, _: &#matrix, _: &Self::Advected) -> #vector { #zero }
             fn constrained(
-                &self,
-                f: &#matrix,
-                w: &Self::Advected,
-                h: #scalar,
+                &self, at: #core::option::Option<(&#matrix, #scalar)>, w: &Self::Advected,
                 each: &mut dyn #core::ops::FnMut(#scalar, #vector),
             ) {
-                each(#private::Nonholonomic::at_increment(self, f, w, h), #private::Nonholonomic::slope(self, f, w, h));
-            }
-            fn reactions(&self, w: &Self::Advected, each: &mut dyn #core::ops::FnMut(#vector)) {
-                each(#private::Nonholonomic::reaction(self, w));
+                let (value, covector) = match at {
+                    #core::option::Option::Some((f, h)) => (
+                        #private::Nonholonomic::at_increment(self, f, w, h), #private::Nonholonomic::slope(self, f, w, h),
+                    ),
+                    #core::option::Option::None => { (#private::real::<#scalar>(0.0), #private::Nonholonomic::reaction(self, w)) }
+                };
+                each(value, covector);
             }
         }
 

@@ -15,8 +15,8 @@ use proc_macro2::TokenStream;
 use crate::declared::errors::{Errors, Mistake};
 use crate::declared::{Declaration, Role, parse};
 use crate::expand::{self, Judgement};
-pub use crate::mathematics::symbolic::Function;
 use crate::mathematics::symbolic::work;
+pub use crate::mathematics::symbolic::{Function, Variance};
 pub(crate) use constraints::Constants;
 pub use constraints::{Constraint, Constraints};
 
@@ -212,12 +212,8 @@ pub struct Carried {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)] // as the types of liestep
 pub enum Action {
-    Covector(usize),
-    Contravariant(usize),
+    Moved(Variance, usize),
     Point(usize),
-    ContravariantTensor(usize),
-    CovariantTensor(usize),
-    MixedTensor(usize),
     /// The configuration of a factor relative to another.
     Relative {
         of: usize,

@@ -112,13 +112,10 @@ pub(super) fn carried(declaration: &Declaration, index: usize) -> Carried {
     let (action, shape) = match kind {
         FieldKind::Given(shape) => (Action::Given, columns_of(shape)),
         FieldKind::Point(rows) => (Action::Point(factor), (rows - 1, 1)),
-        FieldKind::Advected(variance, rows) => match variance {
-            Variance::Contravariant => (Action::ContravariantTensor(factor), (rows, rows)),
-            Variance::Covariant => (Action::CovariantTensor(factor), (rows, rows)),
-            Variance::Mixed => (Action::MixedTensor(factor), (rows, rows)),
-            Variance::Vector | Variance::Covector | Variance::Fixed => (Action::Contravariant(factor), (rows, 1)),
-        },
-        kind => (Action::Covector(factor), (kind.shape().rows(), 1)),
+        FieldKind::Advected(variance, rows) => {
+            (Action::Moved(variance, factor), (rows, if variance.is_tensor() { rows } else { 1 }))
+        }
+        kind => (Action::Moved(Variance::Covector, factor), (kind.shape().rows(), 1)),
     };
     Carried { field, action, shape }
 }

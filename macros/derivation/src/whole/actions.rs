@@ -1,8 +1,9 @@
-//! The nine actions on advected parameters: their change by an increment, and their values at an attitude.
+//! The actions on advected parameters: their change by an increment, and their values at an attitude.
 
 use super::factor::MatrixFactor;
 use super::matrix::Matrix;
 use super::values::{Value, Words};
+use crate::mathematics::symbolic::{Space, Variance};
 use crate::staged::Action;
 
 /// The change of `w` by the increments `F − I` of all factors.
@@ -14,23 +15,22 @@ pub(super) fn change(words: &mut Words, factors: &[MatrixFactor], action: Action
         let other = w.plus(words, &moved).times(words, right);
         moved.plus(words, &other)
     };
+    let zero = || Matrix::of(w.rows, w.columns, |_, _| Value::ZERO);
     match action {
-        Action::Given => Matrix::of(w.rows, w.columns, |_, _| Value::ZERO),
-        Action::Covector(k) => d[k].transpose().times(words, w),
-        Action::Contravariant(k) => inverse(words, k).times(words, w),
+        Action::Given => zero(),
+        Action::Moved(variance, k) => {
+            let back = of_vectors(variance, &d[k], || inverse(words, k));
+            match variance.sides([&back, &d[k]], Matrix::transpose) {
+                [Some(left), Some(right)] => both(words, &left, &right),
+                [Some(left), None] => left.times(words, w),
+                [None, Some(right)] => w.times(words, &right),
+                [None, None] => zero(),
+            }
+        }
         Action::Point(k) => {
             let inverse = factors[k].inverse_of_increment(words, &d[k]);
             let moved = d[k].times(words, &homogeneous(w));
             affine(&inverse.times(words, &moved).negated(words), w.rows)
-        }
-        Action::ContravariantTensor(k) => {
-            let inverse = inverse(words, k);
-            both(words, &inverse, &inverse.transpose())
-        }
-        Action::CovariantTensor(k) => both(words, &d[k].transpose(), &d[k]),
-        Action::MixedTensor(k) => {
-            let inverse = inverse(words, k);
-            both(words, &inverse, &d[k])
         }
         Action::Relative { of, from } => {
             let inverse = inverse(words, from);
@@ -50,18 +50,19 @@ pub(super) fn at_attitude(
 ) -> Matrix {
     match action {
         Action::Given => w.clone(),
-        Action::Covector(k) => g[k].transpose().times(words, w),
-        Action::Contravariant(k) => inverse(words, k).times(words, w),
-        Action::Point(k) => affine(&inverse(words, k).times(words, &homogeneous(w)), w.rows),
-        Action::ContravariantTensor(k) => {
-            let inverse = inverse(words, k);
-            inverse.times(words, w).times(words, &inverse.transpose())
+        Action::Moved(variance, k) => {
+            let back = of_vectors(variance, &g[k], || inverse(words, k));
+            variance.moved(w, [&back, &g[k]], Matrix::transpose, |a, b| a.times(words, b))
         }
-        Action::CovariantTensor(k) => g[k].transpose().times(words, w).times(words, &g[k]),
-        Action::MixedTensor(k) => inverse(words, k).times(words, w).times(words, &g[k]),
+        Action::Point(k) => affine(&inverse(words, k).times(words, &homogeneous(w)), w.rows),
         Action::Relative { of, from } => inverse(words, from).times(words, w).times(words, &g[of]),
         Action::Configuration(of) => w.times(words, &g[of]),
     }
+}
+
+/// The inverse, if vectors are moved by it; covectors are not, and it isn't computed for them.
+fn of_vectors(variance: Variance, g: &Matrix, inverse: impl FnOnce() -> Matrix) -> Matrix {
+    if variance.spaces().contains(&Some(Space::Own)) { inverse() } else { g.clone() }
 }
 
 /// A point with its last coordinate, one.

@@ -1,6 +1,6 @@
 //! The programs of (3.13), counted and run by hand.
 
-use liestep_derivation::{Action, Array, Operation, Program, Refusal, StagedDeclaration, staged};
+use liestep_derivation::{Action, Array, Operation, Program, Refusal, StagedDeclaration, Variance, staged};
 
 use crate::common::{HEAVY_TOP, top};
 
@@ -14,7 +14,10 @@ fn heavy_top() -> StagedDeclaration {
 fn the_heavy_top_has_its_stages() {
     let top = heavy_top();
     assert_eq!((top.parts, top.denominators, top.has_kinetic), ([true; 3], 1, true));
-    assert_eq!(top.carried.iter().map(|w| (w.field, w.action)).collect::<Vec<_>>(), [(Some(4), Action::Covector(0))]);
+    assert_eq!(
+        top.carried.iter().map(|w| (w.field, w.action)).collect::<Vec<_>>(),
+        [(Some(4), Action::Moved(Variance::Covector, 0))]
+    );
     let names: Vec<&str> = top.parameters.iter().map(|parameter| parameter.name.as_str()).collect();
     assert_eq!(names, ["J_d", "m", "g", "rho", "up"]);
     assert_eq!(top.programs.newton_system.outputs.len(), 12);

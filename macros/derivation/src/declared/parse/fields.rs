@@ -35,12 +35,12 @@ pub(super) fn fields(
             fields.push(Field { name, kind, at: field.ty.span() });
         } else {
             unreadable.push(name.unraw().to_string());
+            let carried = Variance::TYPES.map(|(name, _)| format!("{name}<f64, 3>")).join(", ");
             errors.push_over(
                 &field.ty,
                 format!(
                     "this type has no meaning in {}: use f64, Vector3<f64>, Point3<f64>, Matrix3<f64>, \
-                     SVector<f64, 7>, SMatrix<f64, 7, 7>, ContravariantVector<f64, 3>, ContravariantTensor<f64, 3>, \
-                     CovariantTensor<f64, 3>, MixedTensor<f64, 3>, NonstandardInertia, DiagonalNonstandardInertia or \
+                     SVector<f64, 7>, SMatrix<f64, 7, 7>, {carried}, NonstandardInertia, DiagonalNonstandardInertia or \
                      Inertia (or the same with the struct's type parameter)",
                     role.noun()
                 ),
@@ -70,15 +70,14 @@ pub fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
         "Matrix2" | "Matrix3" | "Matrix4" | "Matrix5" | "Matrix6" => FieldKind::Matrix(digit(&name)?),
         "SVector" => FieldKind::Vector(length(ty)?),
         "SMatrix" => FieldKind::Matrix(length(ty)?),
-        "ContravariantVector" => FieldKind::Advected(Variance::Vector, length(ty)?),
-        "ContravariantTensor" => FieldKind::Advected(Variance::Contravariant, length(ty)?),
-        "CovariantTensor" => FieldKind::Advected(Variance::Covariant, length(ty)?),
-        "MixedTensor" => FieldKind::Advected(Variance::Mixed, length(ty)?),
         "NonstandardInertia" => FieldKind::SymmetricInertia,
         "Inertia" => FieldKind::StandardInertia,
         "DiagonalNonstandardInertia" => FieldKind::DiagonalInertia,
         _ if item.generics.type_params().any(|parameter| parameter.ident == name) => FieldKind::Scalar,
-        _ => return None,
+        _ => {
+            let (_, variance) = Variance::TYPES.into_iter().find(|(own, _)| *own == name)?;
+            FieldKind::Advected(variance, length(ty)?)
+        }
     })
 }
 

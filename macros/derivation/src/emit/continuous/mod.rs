@@ -94,7 +94,7 @@ fn of_effect(header: &Header) -> TokenStream {
     let (private, vector, square) = (&header.private, header.vector(), header.square());
     quote_spanned! {Span::mixed_site()=>
         fn velocity_hessian(&self, _: &#vector, w: &Self::Advected) -> #square {
-            #private::Effect::inertia(self, w)
+            #private::Effect::limit(self, #private::core::option::Option::None, w).hessian
         }
     }
 }

@@ -180,12 +180,18 @@ fn advected_rates(declaration: &Declaration, derived: &Continuous) -> Vec<Equati
         }
         let right = match w.variance {
             Variance::Covector if derived.group.rotates() => format!("{name} × {xi}"),
-            Variance::Vector => format!("−{hat} {name}"),
-            Variance::Covector => format!("{hat}ᵀ {name}"),
-            Variance::Contravariant => format!("−{hat} {name} − {name} {hat}ᵀ"),
-            Variance::Covariant => format!("{hat}ᵀ {name} + {name} {hat}"),
-            Variance::Mixed => format!("{name} {hat} − {hat} {name}"),
-            Variance::Fixed => return None,
+            variance => {
+                let by = [("−", hat.clone()), ("+", hat)];
+                let transposed = |(sign, matrix): &(&'static str, String)| (*sign, format!("{matrix}ᵀ"));
+                let [left, right] = variance.sides([&by[0], &by[1]], transposed);
+                let left = left.map(|(sign, matrix)| (sign, format!("{matrix} {name}")));
+                let right = right.map(|(sign, matrix)| (sign, format!("{name} {matrix}")));
+                let mut terms: Vec<_> = [left, right].into_iter().flatten().collect();
+                terms.sort_by_key(|(sign, _)| *sign == "−");
+                let (sign, first) = terms.first()?;
+                let begin = format!("{}{first}", sign.trim_start_matches('+'));
+                terms[1..].iter().fold(begin, |sum, (sign, term)| format!("{sum} {sign} {term}"))
+            }
         };
         equation(right)
     };

@@ -151,14 +151,7 @@ impl Build<'_> {
             return w;
         }
         let [forwards, back] = &element(factor);
-        match variance {
-            Variance::Vector => self.times(back, &w),
-            Variance::Covector => self.times(&self.transposed(forwards), &w),
-            Variance::Contravariant => self.times(&self.times(back, &w), &self.transposed(back)),
-            Variance::Covariant => self.times(&self.times(&self.transposed(forwards), &w), forwards),
-            Variance::Mixed => self.times(&self.times(back, &w), forwards),
-            Variance::Fixed => w,
-        }
+        variance.moved(&w, [back, forwards], |matrix| self.transposed(matrix), |a, b| self.times(a, b))
     }
 
     /// The components of an element of the algebra.

@@ -16,7 +16,7 @@ use crate::declared::lower::Reading;
 use crate::declared::{Declaration, FieldKind, Name, Role, Tree};
 use crate::mathematics::derive::{Derivation, View};
 use crate::mathematics::group::Group;
-use crate::mathematics::symbolic::{Rational, SymbolId, Variance};
+use crate::mathematics::symbolic::{Rational, SymbolId};
 
 /// An element of the group; for a product, an element of each factor.
 #[derive(Clone, Debug)]
@@ -262,15 +262,8 @@ pub fn moved<T: Number>(declaration: &Declaration, values: &Values<T>, [g, inver
             View::Relative { of, from } => g[from].times(w).times(&inverse[of]),
             View::Configuration(of) => w.times(&inverse[of]),
             View::From(factor) => {
-                let (g, inverse) = (&g[factor], &inverse[factor]);
-                match declaration.advected_kind(index).variance() {
-                    Variance::Vector => g.times(w),
-                    Variance::Covector => inverse.transpose().times(w),
-                    Variance::Contravariant => g.times(w).times(&g.transpose()),
-                    Variance::Covariant => inverse.transpose().times(w).times(inverse),
-                    Variance::Mixed => g.times(w).times(inverse),
-                    Variance::Fixed => w.clone(),
-                }
+                let variance = declaration.advected_kind(index).variance();
+                variance.moved(w, [&g[factor], &inverse[factor]], Value::transpose, Value::times)
             }
         };
     }

@@ -83,7 +83,8 @@ pub(super) fn back(
         View::Configuration(of) if context.is_added(of) => next.clone().plus(f(of).1),
         View::From(factor) => {
             let (f, inverse) = f(factor);
-            moved_back(context.symbols, carried.variance, (&f, &inverse), next)
+            let symbols = context.symbols;
+            carried.variance.moved(next, [&f, &inverse], |m| m.transpose(symbols), |a, b| a.times(b, symbols))
         }
         View::Relative { of, from } => context.product(&context.product(&f(from).0, next), &f(of).1),
         View::Configuration(of) => context.product(next, &f(of).1),
@@ -92,35 +93,8 @@ pub(super) fn back(
 
 /// `E·w` in the defining representation.
 pub(super) fn infinitesimal(symbols: &Symbols, variance: Variance, e: &Expression, w: &Expression) -> Expression {
-    let transposed = e.transpose(symbols);
-    let from_left = |matrix: &Expression| matrix.times(w, symbols);
-    let from_right = |matrix: &Expression| w.times(matrix, symbols);
-    let minus = |expression: Expression| expression.scaled(-Rational::ONE);
-    match variance {
-        Variance::Vector => from_left(e),
-        Variance::Covector => minus(from_left(&transposed)),
-        Variance::Contravariant => from_left(e).plus(from_right(&transposed)),
-        Variance::Covariant => minus(from_left(&transposed).plus(from_right(e))),
-        Variance::Mixed => from_left(e).minus(from_right(e)),
-        Variance::Fixed => Expression::zero(w.shape()),
-    }
-}
-
-/// `F·w⁺` in the defining representation, with `F` and its inverse.
-fn moved_back(
-    symbols: &Symbols,
-    variance: Variance,
-    (f, inverse): (&Expression, &Expression),
-    next: &Expression,
-) -> Expression {
-    let product = |factors: [&Expression; 3]| factors[0].times(factors[1], symbols).times(factors[2], symbols);
-    let (f_t, inverse_t) = (f.transpose(symbols), inverse.transpose(symbols));
-    match variance {
-        Variance::Vector => f.times(next, symbols),
-        Variance::Covector => inverse_t.times(next, symbols),
-        Variance::Contravariant => product([f, next, &f_t]),
-        Variance::Covariant => product([&inverse_t, next, inverse]),
-        Variance::Mixed => product([f, next, inverse]),
-        Variance::Fixed => next.clone(),
-    }
+    let negative = e.clone().scaled(-Rational::ONE);
+    let [left, right] = variance.sides([e, &negative], |matrix| matrix.transpose(symbols));
+    let terms = [left.map(|left| left.times(w, symbols)), right.map(|right| w.times(&right, symbols))];
+    terms.into_iter().flatten().reduce(Expression::plus).unwrap_or_else(|| Expression::zero(w.shape()))
 }

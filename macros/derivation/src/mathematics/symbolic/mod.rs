@@ -22,6 +22,6 @@ pub use functions::Function;
 pub use rational::Rational;
 pub use substitution::substitute;
 pub use symbols::{Stage, Structure, SymbolId, Symbols};
-pub use variance::Variance;
+pub use variance::{Space, Variance};
 pub use variation::{Variations, variation};
 pub use word::Factor;

@@ -7,7 +7,7 @@ use liestep_derivation::judged::verify::number::Number;
 use liestep_derivation::judged::verify::residue::Residue;
 use liestep_derivation::judged::verify::value::Value;
 use liestep_derivation::whole::{Chart, Form, WholeStep};
-use liestep_derivation::{Action, Array};
+use liestep_derivation::{Action, Array, Variance};
 
 use crate::common::random::Random;
 
@@ -152,12 +152,12 @@ fn nine_actions() {
 
 fn are_as_by_hand(factors: &[Generators], has_points: bool) {
     let mut actions = vec![
-        (Action::Covector(0), (3, 1)),
-        (Action::Contravariant(0), (3, 1)),
+        (Action::Moved(Variance::Covector, 0), (3, 1)),
+        (Action::Moved(Variance::Vector, 0), (3, 1)),
         (Action::Point(0), (2, 1)),
-        (Action::ContravariantTensor(0), (3, 3)),
-        (Action::CovariantTensor(0), (3, 3)),
-        (Action::MixedTensor(0), (3, 3)),
+        (Action::Moved(Variance::Contravariant, 0), (3, 3)),
+        (Action::Moved(Variance::Covariant, 0), (3, 3)),
+        (Action::Moved(Variance::Mixed, 0), (3, 3)),
         (Action::Relative { of: 1, from: 0 }, (3, 3)),
         (Action::Configuration(2), (3, 3)),
         (Action::Given, (2, 1)),
@@ -176,19 +176,19 @@ fn are_as_by_hand(factors: &[Generators], has_points: bool) {
         let at = |from: &[Residue]| Value { rows, columns, entries: from[first..first + rows * columns].to_vec() };
         let (w, back) = (at(spatial), g[0].inverse());
         let expected = match action {
-            Action::Covector(k) => g[k].transpose().times(&w),
-            Action::Contravariant(_) => back.times(&w),
+            Action::Moved(Variance::Covector, k) => g[k].transpose().times(&w),
+            Action::Moved(Variance::Vector, _) => back.times(&w),
             Action::Point(_) => {
                 let point = Value::new(3, 1, |i, _| if i < 2 { w.at(i, 0) } else { Residue::ONE });
                 let seen = back.times(&point);
                 Value::new(2, 1, |i, _| seen.at(i, 0))
             }
-            Action::ContravariantTensor(_) => back.times(&w).times(&back.transpose()),
-            Action::CovariantTensor(k) => g[k].transpose().times(&w).times(&g[k]),
-            Action::MixedTensor(k) => back.times(&w).times(&g[k]),
+            Action::Moved(Variance::Contravariant, _) => back.times(&w).times(&back.transpose()),
+            Action::Moved(Variance::Covariant, k) => g[k].transpose().times(&w).times(&g[k]),
+            Action::Moved(Variance::Mixed, k) => back.times(&w).times(&g[k]),
             Action::Relative { of, .. } => back.times(&w).times(&g[of]),
             Action::Configuration(of) => w.times(&g[of]),
-            Action::Given => w,
+            Action::Given | Action::Moved(Variance::Fixed, _) => w,
         };
         assert!(are_equal(&at(&seen), &expected), "{action:?}");
         first += rows * columns;

@@ -1,7 +1,7 @@
 //! Whole steps of declarations: a motion that conserves what it has to, and refusals.
 
 use liestep_derivation::whole::{StepRefusal, WholeStep};
-use liestep_derivation::{Action, Array, Program, StagedDeclaration, staged};
+use liestep_derivation::{Action, Array, Program, StagedDeclaration, Variance, staged};
 
 use super::common::{Generators, Numbers, affine, carried, declared, sl3, sp4};
 use crate::common::{HEAVY_TOP, top};
@@ -178,7 +178,7 @@ fn refusals_say_what_to_write() {
     let twice = vec![sl3()[0].clone(), sl3()[0].clone()];
     assert_eq!(refused(&declared(&[twice], Vec::new())), StepRefusal::Dependent);
     // Declarations with too many operations: one of many dimensions, and one with many tensors.
-    let tensors = carried(&[(Action::CovariantTensor(0), (4, 4)); 200]);
+    let tensors = carried(&[(Action::Moved(Variance::Covariant, 0), (4, 4)); 200]);
     for large in [declared(&[affine(8)], Vec::new()), declared(&[affine(3)], tensors)] {
         let refusal = refused(&large);
         assert!(matches!(refusal, StepRefusal::TooLong { .. }) && refusal.to_string().contains("smaller group"));
