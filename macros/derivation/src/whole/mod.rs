@@ -5,8 +5,8 @@
 //! the elimination of the Newton system, with all zeros and ones left out. What runs them compares numbers and copies
 //! them, and knows no group.
 //!
-//! Operations have the order of the library's own groups and solves, so that a step has the bits of the compiled one; from
-//! five rows on, pivots are taken on the diagonal.
+//! Operations have the order of the library's own groups and solves, so that a step has the bits of the compiled one. From
+//! five rows on, pivots of an inverse are taken on the diagonal, where those of the library are in steps of half a radian.
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!
