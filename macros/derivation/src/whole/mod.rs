@@ -46,8 +46,8 @@ pub use reverse::pulled_back;
 pub use step::{Programs, Sizes, WholeStep};
 pub use values::{Value, Words};
 
-/// The limit on the operations of a step: four times those of twelve dimensions in matrices of four rows.
-pub const MOST_OPERATIONS: usize = 40_000;
+/// The limit on the operations of a step: a tenth more than those on the rotations of nine dimensions, with 36 unknowns.
+pub const MOST_OPERATIONS: usize = 120_000;
 
 /// The reason why a declaration has no step as programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
