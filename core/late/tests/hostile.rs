@@ -110,6 +110,16 @@ fn liberties_of_notation() {
     assert!(found[0].message.contains("whole number"), "{found:?}");
 }
 
+/// A matrix with more columns than rows isn't read as a square one.
+#[test]
+fn matrices_are_square() {
+    let found = mistakes(
+        "#[lagrangian(group = SO3, l_d = ((F - I) * C * C.transpose() * (F - I).transpose()).trace() / h)]
+        struct Body { C: SMatrix<f64, 2, 3> }",
+    );
+    assert!(found.iter().all(|mistake| !mistake.message.contains("please report")), "{found:?}");
+}
+
 #[test]
 fn mistakes_have_places() {
     let text = "#[lagrangian(\n    group = SO3,\n    l_d = w.dot(&rho) * h,\n)]\nstruct Body { rho: Vector3<f64> }";
