@@ -214,10 +214,14 @@ impl Words {
                 given.insert(value);
             }
         };
-        outputs.iter().for_each(|&value| need(&mut needed, value));
+        for &value in outputs {
+            need(&mut needed, value);
+        }
         for (at, made) in self.operations.iter().enumerate().rev() {
             if needed[at] {
-                made.read().into_iter().for_each(|value| need(&mut needed, value));
+                for value in made.read() {
+                    need(&mut needed, value);
+                }
             }
         }
         let (mut inputs, mut literals, mut operations) = (Vec::new(), Vec::new(), Vec::new());
