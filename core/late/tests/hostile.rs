@@ -63,6 +63,35 @@ fn large_and_deep_texts_are_refused() {
     assert!(clock.elapsed() < Duration::from_secs(60), "{:?}", clock.elapsed());
 }
 
+/// A long text that is right: a potential of thirty-six products of powers has more than 2,000 tokens.
+#[test]
+fn a_potential_of_many_terms_is_derived() {
+    let terms = (0..36).map(|k| {
+        let (n, m) = (k % 6 + 1, k / 6 + 1);
+        format!(
+            " - 0.{k} * h / 2 * (w.dot(a).powi({n}) * w.dot(b).powi({m})
+                + (F.transpose() * w).dot(a).powi({n}) * (F.transpose() * w).dot(b).powi({m}))"
+        )
+    });
+    let text = format!(
+        "#[lagrangian(group = SO3, advected(w = up), l_d = {KINETIC}{})]
+        struct Body {{ J_d: NonstandardInertia, a: Vector3<f64>, b: Vector3<f64>, up: Vector3<f64> }}",
+        terms.collect::<String>()
+    );
+    let declaration = Declaration::parse(&text).expect("a declaration");
+    assert!(declaration.is_quadratic && declaration.is_self_adjoint);
+}
+
+/// A chain of operators nests its first term, in brackets, too.
+#[test]
+fn long_chains_are_refused() {
+    let chain = |count: usize| format!("k{}", " + k".repeat(count));
+    for bomb in [format!("({})", chain(1_500)), format!("({}){}", chain(700), " * k".repeat(700))] {
+        let found = mistakes(&body(&format!(" + h * {bomb}")));
+        assert!(found[0].message.contains("2000 tokens in a chain"), "{found:?}");
+    }
+}
+
 /// The `&` and the decimal points that a compiler requires are optional; whole numbers stay whole where they have to.
 #[test]
 fn liberties_of_notation() {
@@ -79,6 +108,16 @@ fn liberties_of_notation() {
     assert_eq!(written(strict), written(free));
     let found = mistakes(&body(" + h * k.powi(2.0)"));
     assert!(found[0].message.contains("whole number"), "{found:?}");
+}
+
+/// A matrix with more columns than rows isn't read as a square one.
+#[test]
+fn matrices_are_square() {
+    let found = mistakes(
+        "#[lagrangian(group = SO3, l_d = ((F - I) * C * C.transpose() * (F - I).transpose()).trace() / h)]
+        struct Body { C: SMatrix<f64, 2, 3> }",
+    );
+    assert!(found.iter().all(|mistake| !mistake.message.contains("please report")), "{found:?}");
 }
 
 #[test]

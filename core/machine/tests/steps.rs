@@ -115,6 +115,48 @@ const OTHERS: [&str; 2] = [
     struct Waves { J: NonstandardInertia, rho: Vector3<f64>, up: Vector3<f64> }",
 ];
 
+/// Three bodies with potentials of their relative attitudes.
+const THREE: &str = "#[lagrangian(group(F_1 = SO3, F_2 = SO3, F_3 = SO3),
+    advected(Q = F_2.seen_from(F_1), P = F_3.seen_from(F_1)),
+    l_d = (((F_1 - I) * A * (F_1 - I).transpose()).trace() + ((F_2 - I) * B * (F_2 - I).transpose()).trace()
+        + ((F_3 - I) * B * (F_3 - I).transpose()).trace()) / (2 * h)
+        + h * k * ((D * Q).trace() + (D * F_1.transpose() * Q * F_2).trace() + P.trace()
+            + (F_1.transpose() * P * F_3).trace()) / 2)]
+    struct Three { A: Matrix3<f64>, B: Matrix3<f64>, D: Matrix3<f64>, k: f64 }";
+
+/// A free motion on the group of these generators, each by the rows, columns and values of its entries.
+fn free(name: &str, rows: usize, generators: &[Vec<(usize, usize, i8)>]) -> String {
+    let matrix = |entries: &Vec<(usize, usize, i8)>| {
+        let mut all = vec![vec![0; rows]; rows];
+        entries.iter().for_each(|&(i, j, entry)| all[i][j] = entry);
+        all
+    };
+    let generators: Vec<_> = generators.iter().map(matrix).collect();
+    format!(
+        "#[lagrangian(group = Own, generators = {generators:?}, l_d = (((F - I) * J * (F - I).transpose()).trace()
+            + ((I - inverse(F)) * J * (I - inverse(F)).transpose()).trace()) / (4 * h))]
+        struct {name} {{ J: SMatrix<f64, {rows}, {rows}> }}"
+    )
+}
+
+/// Galilean maps, of five rows; rotations of four dimensions; symplectic maps of two places and momenta.
+fn on_many_rows() -> [String; 3] {
+    let turns = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| vec![(i, j, -1), (j, i, 1)]);
+    let columns = (0..6).map(|k| vec![(k % 3, 3 + k / 3, 1)]);
+    let galilean: Vec<_> = turns.into_iter().chain(columns).chain([vec![(3, 4, 1)]]).collect();
+    let turns = (0..4).flat_map(|i| (i + 1..4).map(move |j| vec![(i, j, -1), (j, i, 1)]));
+    let pairs = (0..2).flat_map(|i| (0..2).map(move |j| vec![(i, j, 1), (2 + j, 2 + i, -1)]));
+    let others = [(0, 2), (2, 0)]
+        .into_iter()
+        .flat_map(|(i, j)| [vec![(i, j, 1)], vec![(i + 1, j + 1, 1)], vec![(i, j + 1, 1), (i + 1, j, 1)]]);
+    let symplectic: Vec<_> = pairs.chain(others).collect();
+    [
+        free("Galilean", 5, &galilean),
+        free("Rotations", 4, &turns.collect::<Vec<_>>()),
+        free("Symplectic", 4, &symplectic),
+    ]
+}
+
 fn parsed(text: &str) -> &'static Declaration {
     Declaration::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
@@ -127,7 +169,8 @@ fn steps_of_all_declarations() {
         FloatingBody FallingBody SuspendedLoad Gyrostat TwoBodies RigidBody
     };
     let mut seen = Counts::default();
-    let all = texts.into_iter().chain(OTHERS).map(parsed);
+    let many = on_many_rows();
+    let all = texts.into_iter().chain(OTHERS).chain([THREE]).chain(many.iter().map(String::as_str)).map(parsed);
     let terms = texts! { RigidBody Gravity GravityGradient Rotor Drag Torque }.map(parsed);
     let pendulum = texts! { DoublePendulum Alike }.map(parsed);
     let sums = [&terms[..], &terms[..2], &pendulum].map(|terms| Declaration::sum(terms).expect("a sum"));

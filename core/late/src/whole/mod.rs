@@ -8,8 +8,8 @@
 //! # Invariants
 //!
 //! - The decisions are those of the compiled step, in the same order, so that both make the same steps to the bit: on SO(3),
-//!   products, SE(2) and SE(3), solves with care included. From five rows on they differ by rounding, as pivots of an
-//!   inverse are taken on the diagonal.
+//!   products and any matrix group, solves with care included. Where matrices of five rows or more are inverted, steps of
+//!   more than half a radian differ by rounding, as pivots are taken on the diagonal.
 //! - Code and texts are shared. What depends on numbers and on `h` are the constants alone, so that a sweep derives once.
 //! - An error leaves a state as it was, and slices of wrong lengths are errors.
 //!

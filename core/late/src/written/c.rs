@@ -82,7 +82,7 @@ pub fn prefix(declaration: &Declaration) -> String {
 /// A step as C99 that needs nothing but `math.h`, on any group: with `-ffp-contract=off` it has the bits of the whole step by
 /// interpretation. A step that takes special care is refused in C: it returns 0 and changes nothing. A step that is self-adjoint
 /// has a function for symmetric compositions of it, too; a continuous limit that is quadratic has the energy and the velocity of
-/// a momentum. All names begin with the [`prefix`].
+/// a momentum. Sums aren't compensated. All names begin with the [`prefix`].
 ///
 /// # Errors
 ///

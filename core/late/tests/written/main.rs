@@ -2,12 +2,13 @@
 
 mod door;
 mod doors;
+mod groups;
 
 use std::fs;
 use std::process::Command;
 
 use declarations::{CayleyTop, DoublePendulum, Flyer, FullTop, LogTop, SixthOrderTop};
-use liestep::groups::{CayleyRetraction, LieGroup, Retraction, SE3, SE23};
+use liestep::groups::{LieGroup as _, SE23};
 use liestep::mechanics::{Effect, Regular};
 use liestep::methods::CompositionScheme;
 use liestep::motion::{Plan, Propagator as _};
@@ -16,7 +17,7 @@ use liestep::with::Method;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep_derivation::whole::StepRefusal;
 use liestep_late::{Declaration, LateError, Whole, c, latex, rust};
-use nalgebra::{Matrix3, Matrix4, SMatrix, SVector, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use door::{Course, Door, STEP, folder, is_there, row};
 
@@ -140,32 +141,6 @@ fn so_has_one_of_two_bodies() {
     let velocity = [0.5, -0.8, 1.2, -0.3, 0.9, 0.4];
     let text = c(parsed(DoublePendulum::<f64>::DECLARATION)).expect("a step in C");
     assert!(has_the_bits_of(&DoublePendulum::asymmetric(), attitude, &velocity, 1_000, (Door::C, &text)));
-}
-
-#[test]
-fn so_has_one_of_rigid_motions() {
-    if !is_there("cc") {
-        return;
-    }
-    let J = Matrix4::new(0.3, 0.02, 0.0, 0.05, 0.02, 0.2, 0.01, 0.0, 0.0, 0.01, 0.25, -0.1, 0.05, 0.0, -0.1, 1.5);
-    let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -0.2, 0.1));
-    let attitude = SE3::from_rotation_and_translation(turn, Vector3::new(0.1, 0.2, 0.5));
-    let text = c(parsed(Flyer::DECLARATION)).expect("a step in C");
-    assert!(has_the_bits_of(&Flyer { J }, attitude, &[0.5, -0.8, 1.2, 0.3, 0.2, -0.4], 1_000, (Door::C, &text)));
-}
-
-/// The inverse of five rows is that by LU, in the library's order.
-#[test]
-fn so_has_one_of_five_rows() {
-    if !is_there("cc") {
-        return;
-    }
-    let J = SMatrix::from_fn(|i, j| if i == j { [1.0, 1.1, 1.2, 1.3, 1.4][i] } else { 0.05 });
-    let turn = SVector::from_fn(|i, _| [0.3, -0.5, 0.2][i % 3]);
-    let attitude = <CayleyRetraction as Retraction<SE23>>::retract(&turn);
-    let text = c(parsed(ExtendedPose::DECLARATION)).expect("a step in C");
-    let velocity = [0.25, -0.4, 0.6, 0.15, 0.1, -0.2, 0.05, 0.3, -0.1];
-    assert!(has_the_bits_of(&ExtendedPose { J }, attitude, &velocity, 1_000, (Door::C, &text)));
 }
 
 /// A drop that keeps its volume, a group of the text's own, and a body in space.

@@ -3,7 +3,9 @@
 //! Terms with the same monomial are collected into one coefficient, which is then computed at construction or once a
 //! step. Afterwards the pair of factors that occurs most often is multiplied first, and shared.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet};
+use std::rc::Rc;
 
 use super::graph::{Graph, Node, NodeId};
 use crate::mathematics::symbolic::Stage;
@@ -23,7 +25,7 @@ pub fn expanded(graph: &mut Graph, outputs: &[NodeId], opaque: &BTreeSet<NodeId>
     for &output in outputs {
         polynomials.push(polynomial(graph, output, opaque, &mut known)?);
     }
-    if polynomials.iter().map(BTreeMap::len).sum::<usize>() > MOST_MONOMIALS {
+    if polynomials.iter().map(|polynomial| polynomial.len()).sum::<usize>() > MOST_MONOMIALS {
         return None;
     }
     let mut products: Vec<Vec<Vec<NodeId>>> = Vec::new();
@@ -65,27 +67,32 @@ fn polynomial(
     graph: &mut Graph,
     id: NodeId,
     opaque: &BTreeSet<NodeId>,
-    known: &mut BTreeMap<NodeId, Polynomial>,
-) -> Option<Polynomial> {
+    known: &mut BTreeMap<NodeId, Rc<Polynomial>>,
+) -> Option<Rc<Polynomial>> {
     if let Some(found) = known.get(&id) {
-        return Some(found.clone());
+        return Some(Rc::clone(found));
     }
     if graph.stage(id) < Stage::Iteration {
-        return Some(if graph.is_zero(id) { Polynomial::new() } else { Polynomial::from([(Vec::new(), id)]) });
+        let term = if graph.is_zero(id) { Polynomial::new() } else { Polynomial::from([(Vec::new(), id)]) };
+        return Some(Rc::new(term));
     }
-    let variable = |graph: &mut Graph| Some(Polynomial::from([(vec![id], graph.one())]));
+    let variable = |graph: &mut Graph| Some(Rc::new(Polynomial::from([(vec![id], graph.one())])));
     if opaque.contains(&id) {
         return variable(graph);
     }
     let result = match graph.node(id) {
         Node::Negate(a) => {
             let a = polynomial(graph, a, opaque, known)?;
-            combined(graph, Polynomial::new(), &a, true)
+            let mut negated = Polynomial::new();
+            combine(graph, &mut negated, &a, true);
+            negated
         }
         Node::Add(a, b) | Node::Subtract(a, b) => {
             let negative = matches!(graph.node(id), Node::Subtract(..));
             let (a, b) = (polynomial(graph, a, opaque, known)?, polynomial(graph, b, opaque, known)?);
-            combined(graph, a, &b, negative)
+            let mut sum = Polynomial::clone(&a);
+            combine(graph, &mut sum, &b, negative);
+            sum
         }
         Node::Multiply(a, b) => {
             let (a, b) = (polynomial(graph, a, opaque, known)?, polynomial(graph, b, opaque, known)?);
@@ -93,12 +100,12 @@ fn polynomial(
                 return None;
             }
             let mut product = Polynomial::new();
-            for (left, &x) in &a {
-                for (right, &y) in &b {
+            for (left, &x) in &*a {
+                for (right, &y) in &*b {
                     let mut variables = [left.as_slice(), right].concat();
                     variables.sort_unstable();
                     let coefficient = graph.multiply(x, y);
-                    product = combined(graph, product, &Polynomial::from([(variables, coefficient)]), false);
+                    insert(graph, &mut product, variables, coefficient);
                 }
             }
             product
@@ -108,22 +115,36 @@ fn polynomial(
     if result.len() > MOST_MONOMIALS {
         return None;
     }
-    known.insert(id, result.clone());
+    let result = Rc::new(result);
+    known.insert(id, Rc::clone(&result));
     Some(result)
 }
 
-fn combined(graph: &mut Graph, mut a: Polynomial, b: &Polynomial, negative: bool) -> Polynomial {
+fn combine(graph: &mut Graph, a: &mut Polynomial, b: &Polynomial, negative: bool) {
     for (variables, &coefficient) in b {
         let coefficient = if negative { graph.negate(coefficient) } else { coefficient };
-        let zero = graph.zero();
-        let sum = graph.sum(&[a.get(variables).copied().unwrap_or(zero), coefficient]);
-        if graph.is_zero(sum) {
-            a.remove(variables);
-        } else {
-            a.insert(variables.clone(), sum);
+        insert(graph, a, variables.clone(), coefficient);
+    }
+}
+
+/// Adds a term; one whose coefficients cancel is left out.
+fn insert(graph: &mut Graph, polynomial: &mut Polynomial, variables: Vec<NodeId>, coefficient: NodeId) {
+    if graph.is_zero(coefficient) {
+        return;
+    }
+    match polynomial.entry(variables) {
+        Entry::Vacant(place) => {
+            place.insert(coefficient);
+        }
+        Entry::Occupied(mut place) => {
+            let sum = graph.sum(&[*place.get(), coefficient]);
+            if graph.is_zero(sum) {
+                place.remove();
+            } else {
+                place.insert(sum);
+            }
         }
     }
-    a
 }
 
 /// Multiplies the pair of factors that occurs in most different products, until none occurs twice.

@@ -5,8 +5,8 @@
 //! the elimination of the Newton system, with all zeros and ones left out. What runs them compares numbers and copies
 //! them, and knows no group.
 //!
-//! Operations have the order of the library's own groups and solves, so that a step has the bits of the compiled one; from
-//! five rows on, pivots are taken on the diagonal.
+//! Operations have the order of the library's own groups and solves, so that a step has the bits of the compiled one. From
+//! five rows on, pivots of an inverse are taken on the diagonal, where those of the library are in steps of half a radian.
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!
@@ -46,8 +46,8 @@ pub use reverse::pulled_back;
 pub use step::{Programs, Sizes, WholeStep};
 pub use values::{Value, Words};
 
-/// The limit on the operations of a step: four times those of twelve dimensions in matrices of four rows.
-pub const MOST_OPERATIONS: usize = 40_000;
+/// The limit on the operations of a step: a tenth more than those on the rotations of nine dimensions, with 36 unknowns.
+pub const MOST_OPERATIONS: usize = 120_000;
 
 /// The reason why a declaration has no step as programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

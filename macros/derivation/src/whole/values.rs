@@ -206,33 +206,46 @@ impl Words {
     /// The program of these outputs, without the operations that they don't need.
     #[must_use]
     pub fn program(&self, outputs: &[Value]) -> Program {
-        let mut needed: BTreeSet<Value> = outputs.iter().copied().collect();
+        // Results by their places, and inputs and numbers in the order of values.
+        let (mut needed, mut given) = (vec![false; self.operations.len()], BTreeSet::new());
+        let mut need = |needed: &mut Vec<bool>, value: Value| match value {
+            Value::Result(at) => needed[at] = true,
+            _ => {
+                given.insert(value);
+            }
+        };
+        for &value in outputs {
+            need(&mut needed, value);
+        }
         for (at, made) in self.operations.iter().enumerate().rev() {
-            if needed.contains(&Value::Result(at)) {
-                needed.extend(made.read());
+            if needed[at] {
+                for value in made.read() {
+                    need(&mut needed, value);
+                }
             }
         }
         let (mut inputs, mut literals, mut operations) = (Vec::new(), Vec::new(), Vec::new());
-        for &value in &needed {
+        let (mut given_at, mut result_at) = (BTreeMap::new(), vec![u32::MAX; needed.len()]);
+        let number = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
+        let numbers = given.iter().filter(|value| matches!(value, Value::Number(_))).count();
+        // Sorted values begin with numbers, while the registers of a program begin with its inputs.
+        let others = given.len() - numbers;
+        for (at, &value) in given.iter().enumerate() {
+            given_at.insert(value, number(if at < numbers { at + others } else { at - numbers }));
             match value {
-                Value::Input(source) => inputs.push(source),
                 Value::Number(bits) => literals.push(f64::from_bits(bits)),
-                Value::Result(_) => operations.extend(self.made(value)),
+                Value::Input(source) => inputs.push(source),
+                Value::Result(_) => {}
             }
         }
-        // Sorted values begin with numbers, while the registers of a program begin with its inputs.
-        let (numbers, others) = (literals.len(), inputs.len());
-        let place = |at: usize| match at {
-            at if at < numbers => at + others,
-            at if at < numbers + others => at - numbers,
-            at => at,
+        for (at, made) in self.operations.iter().enumerate().filter(|(at, _)| needed[*at]) {
+            result_at[at] = number(given.len() + operations.len());
+            operations.push(*made);
+        }
+        let register = |value: Value| match value {
+            Value::Result(at) => result_at[at],
+            _ => given_at.get(&value).copied().unwrap_or(u32::MAX),
         };
-        let registers: BTreeMap<Value, u32> = needed
-            .iter()
-            .enumerate()
-            .map(|(at, &value)| (value, u32::try_from(place(at)).unwrap_or(u32::MAX)))
-            .collect();
-        let register = |value: Value| registers.get(&value).copied().unwrap_or(u32::MAX);
         Program {
             inputs,
             literals,

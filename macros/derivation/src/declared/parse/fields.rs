@@ -69,7 +69,7 @@ pub fn field_kind(ty: &Type, item: &ItemStruct) -> Option<FieldKind> {
         "Point1" | "Point2" | "Point3" => FieldKind::Point(digit(&name)? + 1),
         "Matrix2" | "Matrix3" | "Matrix4" | "Matrix5" | "Matrix6" => FieldKind::Matrix(digit(&name)?),
         "SVector" => FieldKind::Vector(length(ty)?),
-        "SMatrix" => FieldKind::Matrix(length(ty)?),
+        "SMatrix" => FieldKind::Matrix(square(ty)?),
         "NonstandardInertia" => FieldKind::SymmetricInertia,
         "Inertia" => FieldKind::StandardInertia,
         "DiagonalNonstandardInertia" => FieldKind::DiagonalInertia,
@@ -88,14 +88,30 @@ pub(super) fn vector_type(size: usize) -> String {
 
 /// The number in a type's arguments, `3` in `MixedTensor<f64, 3>`.
 fn length(ty: &Type) -> Option<usize> {
-    let PathArguments::AngleBracketed(arguments) = &last_segment(ty)?.arguments else { return None };
-    match arguments.args.last()? {
+    lengths(ty).last().copied().flatten()
+}
+
+/// The number of rows of a matrix that has as many columns.
+fn square(ty: &Type) -> Option<usize> {
+    match lengths(ty)[..] {
+        [_, rows, columns] if rows == columns => rows,
+        _ => None,
+    }
+}
+
+/// The numbers in a type's arguments; none where an argument isn't a number.
+fn lengths(ty: &Type) -> Vec<Option<usize>> {
+    let Some(PathArguments::AngleBracketed(arguments)) = last_segment(ty).map(|segment| &segment.arguments) else {
+        return Vec::new();
+    };
+    let number = |argument: &GenericArgument| match argument {
         GenericArgument::Const(Expr::Lit(literal)) => match &literal.lit {
             syn::Lit::Int(integer) => integer.base10_parse().ok().filter(|&length| length > 0),
             _ => None,
         },
         _ => None,
-    }
+    };
+    arguments.args.iter().map(number).collect()
 }
 
 /// The number that a type's name ends with.

@@ -1,14 +1,16 @@
 //! Limits on the size of the text that is parsed.
 
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 
 use crate::declared::errors::Errors;
 
-/// The limits on tokens and nesting: no person writes a larger Lagrangian, and parsing one recursively could overflow a
-/// stack of 2 MB without optimisation.
-const MOST_TOKENS: usize = 2_000;
+/// The limit on tokens: those of a sum of a hundred terms.
+const MOST_TOKENS: usize = 8_000;
 /// The limit on numbers in rows of matrices, which nest nothing: whether nine rows' generators span an algebra takes a second.
 const MOST_NUMBERS: usize = 4_096;
+/// The limits on tokens that may nest each other, as in `a + b + c`, and on brackets and operators: parsing more recursively could
+/// overflow a stack of 2 MB without optimisation.
+const LONGEST_CHAIN: usize = 2_000;
 const DEEPEST: usize = 32;
 
 /// Words followed by a part of an expression or of a type, which may begin with such a word again.
@@ -28,17 +30,25 @@ struct Open {
     nesting: usize,
     /// Whether a group was read last. An attribute behind one doesn't nest.
     follows_group: bool,
+    /// The number of tokens since the last `;` or `,`, and the longest chain in a bracket among them.
+    chain: usize,
+    within: usize,
+    /// The longest chain so far, with those in brackets.
+    longest: usize,
 }
 
 impl Open {
     fn new(tokens: TokenStream, depth: usize) -> Self {
-        Self { tokens: tokens.into_iter(), depth, operators: 0, nesting: 0, follows_group: false }
+        let tokens = tokens.into_iter();
+        Self { tokens, depth, operators: 0, nesting: 0, follows_group: false, chain: 0, within: 0, longest: 0 }
     }
 
     fn count(&mut self, token: &TokenTree) {
+        self.chain += 1;
+        self.longest = self.longest.max(self.chain + self.within);
         match token {
             TokenTree::Punct(operator) if [';', ','].contains(&operator.as_char()) => {
-                (self.operators, self.nesting) = (0, 0);
+                (self.operators, self.nesting, self.chain, self.within) = (0, 0, 0, 0);
             }
             TokenTree::Punct(operator) => {
                 self.operators += 1;
@@ -54,6 +64,12 @@ impl Open {
         self.follows_group = matches!(token, TokenTree::Group(_));
     }
 
+    /// Takes the chains of a bracket that has been read.
+    fn enclose(&mut self, bracket: &Self) {
+        self.within = self.within.max(bracket.longest);
+        self.longest = self.longest.max(self.chain + self.within);
+    }
+
     fn is_too_deep(&self) -> bool {
         self.depth.max(self.operators).max(self.nesting) > DEEPEST
     }
@@ -62,10 +78,19 @@ impl Open {
 /// Checks the size of the arguments; `None` if they are too large, which has been reported.
 pub(super) fn check(the: &str, arguments: &TokenStream, errors: &mut Errors) -> Option<()> {
     let mut open = vec![Open::new(arguments.clone(), 0)];
-    let (mut count, mut numbers) = (0, 0);
+    let (mut count, mut numbers, mut last) = (0, 0, Span::call_site());
     while let Some(mut innermost) = open.pop() {
-        let Some(token) = innermost.tokens.next() else { continue };
-        count += 1;
+        if innermost.longest > LONGEST_CHAIN {
+            errors.push(last, format!("more than {LONGEST_CHAIN} tokens in a chain: bind parts with `let`"));
+            return None;
+        }
+        let Some(token) = innermost.tokens.next() else {
+            if let Some(outer) = open.last_mut() {
+                outer.enclose(&innermost);
+            }
+            continue;
+        };
+        (count, last) = (count + 1, token.span());
         if count > MOST_TOKENS {
             let message = format!(
                 "{the} has more than {MOST_TOKENS} tokens: declare parts as terms of their own, and add them, `a + b`"

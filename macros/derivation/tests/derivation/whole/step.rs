@@ -178,7 +178,7 @@ fn refusals_say_what_to_write() {
     let twice = vec![sl3()[0].clone(), sl3()[0].clone()];
     assert_eq!(refused(&declared(&[twice], Vec::new())), StepRefusal::Dependent);
     // Declarations with too many operations: one of many dimensions, and one with many tensors.
-    let tensors = carried(&[(Action::Moved(Variance::Covariant, 0), (4, 4)); 200]);
+    let tensors = carried(&vec![(Action::Moved(Variance::Covariant, 0), (4, 4)); 600]);
     for large in [declared(&[affine(8)], Vec::new()), declared(&[affine(3)], tensors)] {
         let refusal = refused(&large);
         assert!(matches!(refusal, StepRefusal::TooLong { .. }) && refusal.to_string().contains("smaller group"));
