@@ -208,8 +208,6 @@ Proof.
 Qed.
 Lemma completed_rel a w z : M w z -> M (completed p a w) (completed q a z).
 Proof. intro; unfold completed; rel. Qed.
-Lemma all_completed_rel l : forall w z, L w z -> L (all_completed p l w) (all_completed q l z).
-Proof. induction l as [| a l IH]; intros w z h; destruct h; cbn [all_completed]; constructor; auto using completed_rel. Qed.
 Lemma stored_rel l : forall w z, L w z -> V (stored p l w) (stored q l z).
 Proof. induction l as [| a l IH]; intros w z h; destruct h; cbn [stored]; rel; auto. Qed.
 Lemma transported_rel l : forall f x g y n z, L f x -> L g y -> V n z -> V (transported p l f g n) (transported q l x y z).
@@ -335,7 +333,6 @@ Ltac go := repeat (cbn beta zeta; match goal with
   | |- _ (moved _ _ _ _ _) (moved _ _ _ _ _) => apply moved_rel
   | |- _ (all_moved _ _ _ _ _) (all_moved _ _ _ _ _) => apply all_moved_rel
   | |- _ (completed _ _ _) (completed _ _ _) => apply completed_rel
-  | |- _ (all_completed _ _ _) (all_completed _ _ _) => apply all_completed_rel
   | |- _ (stored _ _ _) (stored _ _ _) => apply stored_rel
   | |- _ (transported _ _ _ _ _) (transported _ _ _ _ _) => apply transported_rel
   | |- _ (value _ _ _) (value _ _ _) => apply value_rel
@@ -362,8 +359,10 @@ Lemma flat_rel (o u : ops) (Q : T o -> T u -> Prop) a b : Forall2 (Forall2 (Fora
 Proof. intro; unfold flat; apply concat_rel; eapply map_rel; [eassumption |]; intros; apply concat_rel; auto. Qed.
 Lemma in_place_rel a b d e : V a b -> V d e -> L (in_place s c a d) (in_place t c b e).
 Proof.
-  intros; unfold in_place; cbn zeta; apply seq_rel; auto; intro k.
-  destruct (nth_error (advected c) k); [| constructor]; go.
+  intros same there; unfold in_place; cbn zeta; generalize (cut_rel s t R keeps (map shape (advected c)) a b same).
+  generalize (cut s (map shape (advected c)) a), (cut t (map shape (advected c)) b).
+  induction (advected c) as [| i l IH]; intros x_ y_ pairs; destruct pairs as [| m n x_ y_ pairs rest]; cbn [combine map]; constructor; auto.
+  destruct (in_group (acts i)), (in_products c); cbn zeta; go; try (eapply rows_rel; eassumption); try (eapply columns_rel; eassumption).
 Qed.
 Lemma h_rel : R (h s v) (h t x). Proof. unfold h; go. Qed.
 Lemma v_rel k : V (nth k v []) (nth k x []). Proof. go. Qed.
@@ -461,7 +460,7 @@ Proof. unfold attitude, a, mu; split; cbn [fst snd]; go; auto with rel; apply fl
 Lemma momentum_rel : agree (momentum s c v) (momentum t c x).
 Proof. unfold momentum; split; cbn [fst snd]; auto with rel; apply ended_rel; go; auto with rel. Qed.
 Lemma transport_rel : agree (transport s c v) (transport t c x).
-Proof. unfold transport, mu, eta; split; cbn [fst snd]; go; try apply ended_rel; go; auto with rel. Qed.
+Proof. unfold transport, a, mu, eta; split; cbn [fst snd]; go; try apply ended_rel; go; auto with rel. Qed.
 Lemma advected_rel : agree (advected_ s c v) (advected_ t c x).
 Proof.
   assert (e : V (stored s (advected c) (all_moved s (F s c v) (G s c v) (advected c) (w s c v)))

@@ -25,7 +25,7 @@ OTHER = {"+": "-", "-": "+", "*": "+", "/": "*"}
 TABLE = HERE / "proved.txt"
 LIMIT = 30
 # A divisor and the argument of a function have few terms: sums and products of more aren't computed until all of these are known.
-SHORT = 2000
+SHORT = 300
 ROUNDS = 20
 
 
@@ -53,9 +53,9 @@ def said(folder: Path, name: str, text: str) -> tuple[str, bool]:
     return compiled(folder, name)
 
 
-def prepared(folder: Path, data: dict[str, Any]) -> write.Problem:
+def prepared(folder: Path, data: dict[str, Any], is_exact: bool = False) -> write.Problem:
     """A certificate, with the divisors and the rules for functions that its claims ask for."""
-    problem = write.Problem(data)
+    problem = write.Problem(data, is_exact)
     for _ in range(ROUNDS):
         answer, _ = said(folder, "Asked", write.questions(problem, SHORT))
         found = re.search(r"= (\[.*\])\s*: list", re.sub(r"%\w+", "", answer), re.DOTALL)
@@ -76,6 +76,11 @@ def proved(folder: Path, problem: write.Problem, names: list[str]) -> bool:
     return is_right and "Closed under the global context" in answer
 
 
+def unproved(folder: Path, problem: write.Problem, names: list[str]) -> list[str]:
+    """Those of some claims of which a proof isn't found."""
+    return [] if proved(folder, problem, names) else [name for name in names if not proved(folder, problem, [name])]
+
+
 def line(folder: Path, data: dict[str, Any]) -> tuple[str, int, bool]:
     """What is proved of a certificate, the number of claims, and whether nothing is refused."""
     try:
@@ -84,10 +89,11 @@ def line(folder: Path, data: dict[str, Any]) -> tuple[str, int, bool]:
         return f"declined: {reason}", 0, True
     claims = problem.claims()
     rest = {name.lower(): f"declined {name.lower()}: {reason}" for name, reason in claims.items() if reason}
-    if not proved(folder, problem, problem.stated):
-        for name in problem.stated:
-            if not proved(folder, problem, [name]):
-                rest[name.lower()] = f"{name.lower()}: {verdict(folder, problem, name)}"
+    left = unproved(folder, problem, problem.stated)
+    if left:
+        problem = prepared(folder, data, is_exact=True)
+        for name in unproved(folder, problem, left):
+            rest[name.lower()] = f"{name.lower()}: {verdict(folder, problem, name)}"
     count = len(claims) - len(rest)
     is_right = not any(one.endswith((": Wrong", ": Open")) for one in rest.values())
     return "; ".join([f"{count} of {len(claims)} proved", *rest.values()]), count, is_right

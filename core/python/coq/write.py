@@ -102,10 +102,13 @@ class Factor(motion.Factor):
 
 
 class Problem:
-    """A certificate, with the variables that its claims are of."""
+    """A certificate, with the variables that its claims are of.
 
-    def __init__(self, data: dict[str, Any]) -> None:
-        self.data = data
+    Where it isn't exact, it is more general: roots are any numbers, whatever their squares, and elements of the group any matrices.
+    """
+
+    def __init__(self, data: dict[str, Any], is_exact: bool = False) -> None:
+        self.data, self.is_exact = data, is_exact
         self.factors = [Factor(one) for one in data["factors"]]
         self.counts = [len(factor.generators) for factor in self.factors]
         self.n = sum(self.counts)
@@ -132,8 +135,8 @@ class Problem:
 
     def placed(self) -> list[list[int]]:
         """The variables of each array, in the order of Step.v."""
-        n, shapes = self.n, [one for one in self.carried if one.action not in ("relative", "configuration")]
-        free, in_group = sum(one.rows * one.columns for one in shapes), len(shapes) < len(self.carried)
+        n, free = self.n, sum(one.rows * one.columns for one in self.carried)
+        in_group = any(one.action in ("relative", "configuration") for one in self.carried)
         h, half, target, momentum = self.new(1), self.new(n), self.new(n), self.new(n)
         parameters: list[int] = []
         for one in self.data["parameters"]:
@@ -250,7 +253,9 @@ class Problem:
             self.rules.append("AtOrigin")
             return
         self.places[12] += self.new(1)
-        if function == "sqrt":
+        if function == "sqrt" and not self.is_exact:
+            self.rules.append(f"RootAt {value} (Number 1 1) (Number 0 1) {x}")
+        elif function == "sqrt":
             below = product([(one, (k + 1) // 2) for one, k in known])
             square = product([(argument, 1), *((one, k % 2) for one, k in known)])
             self.rules.append(f"RootAt {value} {self.text(below)} {self.text(square)} {x}")
@@ -327,6 +332,7 @@ class Problem:
             "parameters": shapes,
             "advected": listed(advected),
             "power": self.data["power"],
+            "in_products": str(self.is_exact).lower(),
             **self.texts,
             **self.programs,
         }
