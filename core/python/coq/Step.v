@@ -321,11 +321,11 @@ Definition calls (r : rule) (names : list (list (list num))) : list (function * 
       let q := of a in let t := x k in let below := one + q * t * t in
       numbered Stumpff q (stumpffs q 12 0 1 ((one - q * t * t) / below) (of_nat 2 * t / below))
   | RatioAt a k =>
-      let z := of a in numbered LogRatio z (ratios (one - of_nat 2 * z) (of_nat 2 * z * (one - z)) 8 0 one (x k))
+      let z := of a in numbered LogRatio z (ratios (one - of_nat 2 * z) (of_nat 2 * z * (one - z)) 4 0 one (x k))
   | AtOrigin =>
       let zero := of_nat 0 in
       [(Sin, zero, zero); (Cos, zero, one); (Exp, zero, one); (Ln, one, zero)] ++
-      numbered Stumpff zero (stumpffs_of_0 12 0 1) ++ numbered LogRatio zero (ratios_of_0 8 0 one)
+      numbered Stumpff zero (stumpffs_of_0 12 0 1) ++ numbered LogRatio zero (ratios_of_0 4 0 one)
   end.
 End Rules.
 

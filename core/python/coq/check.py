@@ -53,11 +53,10 @@ def said(folder: Path, name: str, text: str) -> tuple[str, bool]:
     return compiled(folder, name)
 
 
-def prepared(folder: Path, data: dict[str, Any], is_exact: bool = False) -> write.Problem:
-    """A certificate, with the divisors and the rules for functions that its claims ask for."""
-    problem = write.Problem(data, is_exact)
+def prepared(folder: Path, problem: write.Problem, names: list[str]) -> write.Problem:
+    """A problem with the divisors and the rules for functions that these claims ask for."""
     for _ in range(ROUNDS):
-        answer, _ = said(folder, "Asked", write.questions(problem, SHORT))
+        answer, _ = said(folder, "Asked", write.questions(problem, SHORT, names))
         found = re.search(r"= (\[.*\])\s*: list", re.sub(r"%\w+", "", answer), re.DOTALL)
         if not found or not problem.answer(ast.literal_eval(found[1].replace(";", ","))):
             break
@@ -84,14 +83,15 @@ def unproved(folder: Path, problem: write.Problem, names: list[str]) -> list[str
 def line(folder: Path, data: dict[str, Any]) -> tuple[str, int, bool]:
     """What is proved of a certificate, the number of claims, and whether nothing is refused."""
     try:
-        problem = prepared(folder, data)
+        problem = write.Problem(data)
+        prepared(folder, problem, problem.stated)
     except write.field.Declined as reason:
         return f"declined: {reason}", 0, True
     claims = problem.claims()
     rest = {name.lower(): f"declined {name.lower()}: {reason}" for name, reason in claims.items() if reason}
     left = unproved(folder, problem, problem.stated)
     if left:
-        problem = prepared(folder, data, is_exact=True)
+        problem = prepared(folder, write.Problem(data, is_exact=True), left)
         for name in unproved(folder, problem, left):
             rest[name.lower()] = f"{name.lower()}: {verdict(folder, problem, name)}"
     count = len(claims) - len(rest)
@@ -156,7 +156,8 @@ def main() -> int:
 
 def print_mutants(folder: Path, name: str, data: dict[str, Any], step: int) -> None:
     """Which of the changed certificates are accepted; the divisors and rules are those of the right one."""
-    problem, count, passed = prepared(folder, data), 0, []
+    problem, count, passed = write.Problem(data), 0, []
+    prepared(folder, problem, problem.stated)
     for place, other in mutants(data, step):
         count += 1
         if proved(folder, problem.changed(other), problem.stated):

@@ -390,7 +390,7 @@ def verdict(problem: Problem, name: str) -> str:
     return problem.written() + f"Eval vm_compute in found data {name}.\n"
 
 
-def questions(problem: Problem, most: int) -> str:
-    """The file of a certificate, with what a check asks for; products of more terms are left out."""
+def questions(problem: Problem, most: int, names: list[str]) -> str:
+    """The file of a certificate, with what a check of these claims asks for; products of more terms are left out."""
     printing = "Set Printing Depth 1000000.\nSet Printing Width 1000.\n"
-    return problem.written() + printing + f"Eval vm_compute in asked {most} data {listed(problem.stated)}.\n"
+    return problem.written() + printing + f"Eval vm_compute in asked {most} data {listed(names)}.\n"
