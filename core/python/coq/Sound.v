@@ -472,6 +472,18 @@ Proof.
   assert (e : V (stored s (advected c) (w s c v)) (stored t (advected c) (w t c x))) by (go; auto with rel).
   unfold guess, history, y, a, mu; cbn zeta; split; cbn [fst snd]; [rewrite (length_rel _ _ _ e); auto with rel | go].
 Qed.
+Lemma checks_rel : agree (checks s c v) (checks t c x).
+Proof.
+  assert (e : V (stored s (advected c) (w s c v)) (stored t (advected c) (w t c x))) by (go; auto with rel).
+  unfold checks; rewrite (length_rel _ _ _ e); cbn zeta; match goal with |- context [ended s c v _ (_ + S (length ?far))] =>
+    match goal with |- context [ended t c x _ (_ + S (length ?far_))] => assert (d : V far far_) end end.
+  - apply flat_rel, each_rel; [| unfold y; apply v_rel; auto]; intros f i j same; destruct (distance f) as [[k z] |]; repeat constructor.
+    assert (m : M (map (firstn k) (hat s f i)) (map (firstn k) (hat t f j))) by
+      (eapply map_rel; [apply hat_rel; eassumption | intros; apply firstn_rel; assumption]).
+    apply mul_rel; auto; [apply ratio_rel | apply inner_rel]; auto.
+  - rewrite (length_rel _ _ _ d); unfold a, mu; split; cbn [fst snd]; [apply skipn_rel, ended_rel; auto using v_rel |].
+    constructor; auto; eapply fold_rel; [apply firstn_rel, ended_rel; auto using v_rel | intros; apply add_rel; auto | apply whole_rel; auto].
+Qed.
 Lemma at_attitude_rel : agree (at_attitude s c v) (at_attitude t c x).
 Proof.
   unfold at_attitude; cbn zeta; match goal with |- agree (_, ?there) (_, ?there_) => assert (e : V there there_) end.
@@ -481,17 +493,17 @@ Qed.
 End Claims.
 
 (* A claim by its name. *)
-Inductive name := Increments | Work | Target | Scales | Residual | Jacobian | Update | Attitude | Momentum | Transport | Advected | Guess | Seen.
+Inductive name := Increments | Work | Target | Scales | Residual | Jacobian | Update | Attitude | Momentum | Transport | Advected | Guess | Checks | Seen.
 Definition claimed (k : name) : claim :=
   match k with
   | Increments => increments | Work => work | Target => targets | Scales => scales | Residual => residual | Jacobian => jacobian | Update => update
-  | Attitude => attitude | Momentum => momentum | Transport => transport | Advected => advected_ | Guess => guess | Seen => at_attitude
+  | Attitude => attitude | Momentum => momentum | Transport => transport | Advected => advected_ | Guess => guess | Checks => checks | Seen => at_attitude
   end.
 Lemma claimed_rel k s t R (keeps : related s t R) c v x : Forall2 (Forall2 R) v x -> agree s t R (claimed k s c v) (claimed k t c x).
 Proof.
   intro; destruct k; cbn [claimed];
     auto using increments_rel, work_rel, targets_rel, scales_rel, residual_rel, jacobian_rel, update_rel, attitude_rel, momentum_rel, transport_rel,
-      advected_rel, guess_rel, at_attitude_rel.
+      advected_rel, guess_rel, checks_rel, at_attitude_rel.
 Qed.
 
 (* The check *)

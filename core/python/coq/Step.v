@@ -31,7 +31,8 @@ Record factor := {
   size : nat;
   is_product : bool;
   generators : list (list (list (Z * Z)));
-  components : list (list (list (Z * Z))) (* matrices with ⟨D_j, E_k⟩ = δ_jk *)
+  components : list (list (list (Z * Z))); (* matrices with ⟨D_j, E_k⟩ = δ_jk *)
+  distance : option (nat * (Z * Z)) (* how far ŷ is from zero: so many columns, and a multiple of the sum of their entries' squares *)
 }.
 
 Inductive action :=
@@ -464,6 +465,14 @@ Definition guess : equation o :=
   let first := squares c + n + length (stored o (advected c) (w o c v)) in
   (ended o c v first (3 * n) (a o v) (mu o v),
    y o v ++ change ++ zip o (sub o) (zip o (add o) (y o v) (zip o (add o) change change)) (skipn n (history o v))).
+
+(* The sum of all of μ⁺ and w⁺, and how far the increments are from the identity. *)
+Definition checks : equation o :=
+  let m := (n + length (stored o (advected c) (w o c v)))%nat in
+  let far := flat o (each o (fun f y => match distance f with
+    | Some (k, z) => [[mul o (ratio o z) (inner o (map (firstn k) (hat o f y)) (map (firstn k) (hat o f y)))]] | None => [] end) (factors c) (y o v)) in
+  let all := ended o c v (squares c) (m + 3 * n + S (length far)) (a o v) (mu o v) in
+  (skipn (m + 3 * n) all, fold_left (add o) (firstn m all) (whole o 0) :: far).
 
 (* g⁻¹·w₀, with the identity where no parameter has w₀. *)
 Definition at_attitude : equation o :=

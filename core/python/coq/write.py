@@ -37,6 +37,7 @@ CLAIMS = {
     "Transport": ("transport", ["finish", "target"]),
     "Advected": ("advected", ["finish"]),
     "Guess": ("guess", ["finish"]),
+    "Checks": ("checks", ["finish"]),
     "Seen": ("seen", ["seen"]),
 }
 # Unknowns of a solve that is stated for any Jacobian, whose determinant stands below.
@@ -91,6 +92,20 @@ class Factor(motion.Factor):
         )
         self.is_rotation = self.listed == motion.KNOWN["SO3"]
 
+    @property
+    def distance(self) -> str:
+        """How a step measures an increment: `Factor.measure` of the reading, as columns and a multiple."""
+        if self.is_translation:
+            return "None"
+        n, grids = self.rows, [[e[at : at + self.rows] for at in range(0, len(e), self.rows)] for e in self.listed]
+
+        def is_skew(k: int) -> bool:
+            return all(e[i][j] + e[j][i] == 0 for e in grids for i in range(k) for j in range(k)) and not any(x for e in grids for row in e[k:] for x in row)
+
+        columns = next((k for k in reversed(range(2, n + 1)) if is_skew(k)), n)
+        multiple = Fraction(1, 8) if self.is_rotation else Fraction(1, 2) if columns < n else Fraction(1)
+        return f"Some ({columns}%nat, {rational(multiple)})"
+
     def grid(self, entries: list[Fraction]) -> str:
         rows = [entries[at : at + self.rows] for at in range(0, len(entries), self.rows)]
         return listed(listed(rational(entry) for entry in row) for row in rows)
@@ -98,7 +113,7 @@ class Factor(motion.Factor):
     def written(self) -> str:
         chart = "true" if self.chart == "product" else "false"
         generators, components = (listed(self.grid(e) for e in each) for each in (self.listed, self.coefficients))
-        return f"{{| size := {self.rows}; is_product := {chart}; generators := {generators}; components := {components} |}}"
+        return f"{{| size := {self.rows}; is_product := {chart}; generators := {generators}; components := {components}; distance := {self.distance} |}}"
 
 
 class Problem:
