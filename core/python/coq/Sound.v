@@ -208,8 +208,6 @@ Proof.
 Qed.
 Lemma completed_rel a w z : M w z -> M (completed p a w) (completed q a z).
 Proof. intro; unfold completed; rel. Qed.
-Lemma all_completed_rel l : forall w z, L w z -> L (all_completed p l w) (all_completed q l z).
-Proof. induction l as [| a l IH]; intros w z h; destruct h; cbn [all_completed]; constructor; auto using completed_rel. Qed.
 Lemma stored_rel l : forall w z, L w z -> V (stored p l w) (stored q l z).
 Proof. induction l as [| a l IH]; intros w z h; destruct h; cbn [stored]; rel; auto. Qed.
 Lemma transported_rel l : forall f x g y n z, L f x -> L g y -> V n z -> V (transported p l f g n) (transported q l x y z).
@@ -335,7 +333,6 @@ Ltac go := repeat (cbn beta zeta; match goal with
   | |- _ (moved _ _ _ _ _) (moved _ _ _ _ _) => apply moved_rel
   | |- _ (all_moved _ _ _ _ _) (all_moved _ _ _ _ _) => apply all_moved_rel
   | |- _ (completed _ _ _) (completed _ _ _) => apply completed_rel
-  | |- _ (all_completed _ _ _) (all_completed _ _ _) => apply all_completed_rel
   | |- _ (stored _ _ _) (stored _ _ _) => apply stored_rel
   | |- _ (transported _ _ _ _ _) (transported _ _ _ _ _) => apply transported_rel
   | |- _ (value _ _ _) (value _ _ _) => apply value_rel
@@ -362,8 +359,10 @@ Lemma flat_rel (o u : ops) (Q : T o -> T u -> Prop) a b : Forall2 (Forall2 (Fora
 Proof. intro; unfold flat; apply concat_rel; eapply map_rel; [eassumption |]; intros; apply concat_rel; auto. Qed.
 Lemma in_place_rel a b d e : V a b -> V d e -> L (in_place s c a d) (in_place t c b e).
 Proof.
-  intros; unfold in_place; cbn zeta; apply seq_rel; auto; intro k.
-  destruct (nth_error (advected c) k); [| constructor]; go.
+  intros same there; unfold in_place; cbn zeta; generalize (cut_rel s t R keeps (map shape (advected c)) a b same).
+  generalize (cut s (map shape (advected c)) a), (cut t (map shape (advected c)) b).
+  induction (advected c) as [| i l IH]; intros x_ y_ pairs; destruct pairs as [| m n x_ y_ pairs rest]; cbn [combine map]; constructor; auto.
+  destruct (in_group (acts i)), (in_products c); cbn zeta; go; try (eapply rows_rel; eassumption); try (eapply columns_rel; eassumption).
 Qed.
 Lemma h_rel : R (h s v) (h t x). Proof. unfold h; go. Qed.
 Lemma v_rel k : V (nth k v []) (nth k x []). Proof. go. Qed.
@@ -461,7 +460,7 @@ Proof. unfold attitude, a, mu; split; cbn [fst snd]; go; auto with rel; apply fl
 Lemma momentum_rel : agree (momentum s c v) (momentum t c x).
 Proof. unfold momentum; split; cbn [fst snd]; auto with rel; apply ended_rel; go; auto with rel. Qed.
 Lemma transport_rel : agree (transport s c v) (transport t c x).
-Proof. unfold transport, mu, eta; split; cbn [fst snd]; go; try apply ended_rel; go; auto with rel. Qed.
+Proof. unfold transport, a, mu, eta; split; cbn [fst snd]; go; try apply ended_rel; go; auto with rel. Qed.
 Lemma advected_rel : agree (advected_ s c v) (advected_ t c x).
 Proof.
   assert (e : V (stored s (advected c) (all_moved s (F s c v) (G s c v) (advected c) (w s c v)))
@@ -473,6 +472,18 @@ Proof.
   assert (e : V (stored s (advected c) (w s c v)) (stored t (advected c) (w t c x))) by (go; auto with rel).
   unfold guess, history, y, a, mu; cbn zeta; split; cbn [fst snd]; [rewrite (length_rel _ _ _ e); auto with rel | go].
 Qed.
+Lemma checks_rel : agree (checks s c v) (checks t c x).
+Proof.
+  assert (e : V (stored s (advected c) (w s c v)) (stored t (advected c) (w t c x))) by (go; auto with rel).
+  unfold checks; rewrite (length_rel _ _ _ e); cbn zeta; match goal with |- context [ended s c v _ (_ + S (length ?far))] =>
+    match goal with |- context [ended t c x _ (_ + S (length ?far_))] => assert (d : V far far_) end end.
+  - apply flat_rel, each_rel; [| unfold y; apply v_rel; auto]; intros f i j same; destruct (distance f) as [[k z] |]; repeat constructor.
+    assert (m : M (map (firstn k) (hat s f i)) (map (firstn k) (hat t f j))) by
+      (eapply map_rel; [apply hat_rel; eassumption | intros; apply firstn_rel; assumption]).
+    apply mul_rel; auto; [apply ratio_rel | apply inner_rel]; auto.
+  - rewrite (length_rel _ _ _ d); unfold a, mu; split; cbn [fst snd]; [apply skipn_rel, ended_rel; auto using v_rel |].
+    constructor; auto; eapply fold_rel; [apply firstn_rel, ended_rel; auto using v_rel | intros; apply add_rel; auto | apply whole_rel; auto].
+Qed.
 Lemma at_attitude_rel : agree (at_attitude s c v) (at_attitude t c x).
 Proof.
   unfold at_attitude; cbn zeta; match goal with |- agree (_, ?there) (_, ?there_) => assert (e : V there there_) end.
@@ -482,17 +493,17 @@ Qed.
 End Claims.
 
 (* A claim by its name. *)
-Inductive name := Increments | Work | Target | Scales | Residual | Jacobian | Update | Attitude | Momentum | Transport | Advected | Guess | Seen.
+Inductive name := Increments | Work | Target | Scales | Residual | Jacobian | Update | Attitude | Momentum | Transport | Advected | Guess | Checks | Seen.
 Definition claimed (k : name) : claim :=
   match k with
   | Increments => increments | Work => work | Target => targets | Scales => scales | Residual => residual | Jacobian => jacobian | Update => update
-  | Attitude => attitude | Momentum => momentum | Transport => transport | Advected => advected_ | Guess => guess | Seen => at_attitude
+  | Attitude => attitude | Momentum => momentum | Transport => transport | Advected => advected_ | Guess => guess | Checks => checks | Seen => at_attitude
   end.
 Lemma claimed_rel k s t R (keeps : related s t R) c v x : Forall2 (Forall2 R) v x -> agree s t R (claimed k s c v) (claimed k t c x).
 Proof.
   intro; destruct k; cbn [claimed];
     auto using increments_rel, work_rel, targets_rel, scales_rel, residual_rel, jacobian_rel, update_rel, attitude_rel, momentum_rel, transport_rel,
-      advected_rel, guess_rel, at_attitude_rel.
+      advected_rel, guess_rel, checks_rel, at_attitude_rel.
 Qed.
 
 (* The check *)

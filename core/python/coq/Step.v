@@ -31,7 +31,8 @@ Record factor := {
   size : nat;
   is_product : bool;
   generators : list (list (list (Z * Z)));
-  components : list (list (list (Z * Z))) (* matrices with ⟨D_j, E_k⟩ = δ_jk *)
+  components : list (list (list (Z * Z))); (* matrices with ⟨D_j, E_k⟩ = δ_jk *)
+  distance : option (nat * (Z * Z)) (* how far ŷ is from zero: so many columns, and a multiple of the sum of their entries' squares *)
 }.
 
 Inductive action :=
@@ -46,6 +47,7 @@ Record certificate := {
   parameters : list (nat * nat); (* shapes *)
   advected : list carried;
   power : nat;
+  in_products : bool; (* whether elements of the group among `advected` are products of increments *)
   energy : text;
   virtual : text;
   constants : program;
@@ -59,6 +61,22 @@ Definition is_point (a : action) : bool := match a with Point _ => true | _ => f
 Definition in_group (a : action) : bool := match a with Relative _ _ | Configuration _ => true | _ => false end.
 Definition unknowns (c : certificate) : nat := list_sum (map (fun f => length (generators f)) (factors c)).
 Definition squares (c : certificate) : nat := list_sum (map (fun f => size f * size f) (factors c)).
+
+(* Whether an entry isn't the same in all elements of the group: in a product of generators it isn't zero. *)
+Definition spread (n : nat) (s : nat -> nat -> bool) : list (list bool) :=
+  map (fun i => map (fun j => s i j || existsb (fun k => s i k && s k j) (seq 0 n)) (seq 0 n)) (seq 0 n).
+Definition read_off (l : list (list bool)) (i j : nat) : bool := nth j (nth i l []) false.
+Definition in_generators (f : factor) (i j : nat) : bool :=
+  existsb (fun e => negb (fst (nth j (nth i e []) (0, 1)) =? 0)%Z) (generators f).
+Definition may_differ (c : certificate) (a : action) : nat -> nat -> bool :=
+  match a with
+  | Relative k _ | Configuration k =>
+      match nth_error (factors c) k with
+      | Some f => read_off (Nat.iter (size f) (fun l => spread (size f) (read_off l)) (spread (size f) (in_generators f)))
+      | None => fun _ _ => true
+      end
+  | _ => fun _ _ => true
+  end.
 
 (* Which registers some outputs need. *)
 Definition set := PositiveMap.t unit.
@@ -213,8 +231,6 @@ Fixpoint all_moved (f g : list mat) (l : list carried) (w : list mat) : list mat
   match l, w with a :: l, x :: w => moved f g (acts a) x :: all_moved f g l w | _, _ => [] end.
 (* A point has a last coordinate, one, which isn't stored. *)
 Definition completed (a : carried) (m : mat) : mat := if is_point (acts a) then m ++ [[one]] else m.
-Fixpoint all_completed (l : list carried) (w : list mat) : list mat :=
-  match l, w with a :: l, x :: w => completed a x :: all_completed l w | _, _ => [] end.
 Fixpoint stored (l : list carried) (w : list mat) : row :=
   match l, w with
   | a :: l, x :: w => (if is_point (acts a) then firstn (fst (shape a)) (concat x) else concat x) ++ stored l w
@@ -306,11 +322,11 @@ Definition calls (r : rule) (names : list (list (list num))) : list (function * 
       let q := of a in let t := x k in let below := one + q * t * t in
       numbered Stumpff q (stumpffs q 12 0 1 ((one - q * t * t) / below) (of_nat 2 * t / below))
   | RatioAt a k =>
-      let z := of a in numbered LogRatio z (ratios (one - of_nat 2 * z) (of_nat 2 * z * (one - z)) 8 0 one (x k))
+      let z := of a in numbered LogRatio z (ratios (one - of_nat 2 * z) (of_nat 2 * z * (one - z)) 4 0 one (x k))
   | AtOrigin =>
       let zero := of_nat 0 in
       [(Sin, zero, zero); (Cos, zero, one); (Exp, zero, one); (Ln, one, zero)] ++
-      numbered Stumpff zero (stumpffs_of_0 12 0 1) ++ numbered LogRatio zero (ratios_of_0 8 0 one)
+      numbered Stumpff zero (stumpffs_of_0 12 0 1) ++ numbered LogRatio zero (ratios_of_0 4 0 one)
   end.
 End Rules.
 
@@ -339,14 +355,17 @@ Definition axis (k : nat) : row := map (fun j => if Nat.eqb j k then whole o 1 e
 
 Definition F := each o (increment o) (factors c) y.
 Definition G := each o (back o) (factors c) y.
-(* What is carried along: some numbers, but elements of the group where it is one. *)
+(* What is carried along: any numbers. For an element of the group these are its entries, but for those that all elements share; or, where
+   a claim needs it, the product of increments. *)
 Definition in_place (numbers coordinates : row) : list mat :=
   let f := each o (increment o) (factors c) coordinates in let g := each o (back o) (factors c) coordinates in
-  let shapes := map (fun x => if in_group (acts x) then (0, 0)%nat else shape x) (advected c) in
-  let some := all_completed o (advected c) (cut o shapes numbers) in
-  map (fun k => match nth_error (advected c) k with
-    | Some x => if in_group (acts x) then moved o f g (acts x) (unit o (fst (shape x))) else nth k some []
-    | None => [] end) (seq 0 (length (advected c))).
+  map (fun x => let '(a, m) := x in
+    if in_group (acts a) then
+      if in_products c then moved o f g (acts a) (unit o (fst (shape a))) else
+      let differs := may_differ c (acts a) in
+      tab o (rows o m) (columns o m) (fun i j => if differs i j then entry o m i j else if Nat.eqb i j then whole o 1 else whole o 0)
+    else completed o a m)
+  (combine (advected c) (cut o (map shape (advected c)) numbers)).
 Definition w := in_place (nth 5 v []) (nth 6 v []).
 Definition other := in_place (nth 10 v []) (nth 11 v []).
 Definition g := each o (increment o) (factors c) (nth 6 v []).
@@ -431,11 +450,11 @@ Definition attitude : equation o := (ended o c v 0 (squares c) (a o v) (mu o v),
 Definition momentum : equation o :=
   let b := before o c v in
   (ended o c v (squares c) n (zip o (add o) b (kick o c v (w o c v))) b, after o c v).
+(* For any target: that the momentum is its own part of it isn't needed. *)
 Definition transport : equation o :=
-  let first := squares c in let x := eta o v in
-  let w := w o c v in let k := kick o c v w in
-  let found mu := ended o c v first n (zip o (add o) mu k) mu in
-  (zip o (sub o) (found (zip o (add o) (mu o v) x)) (found (mu o v)), transported o (factors c) (F o c v) (G o c v) x).
+  let x := eta o v in
+  let found of := ended o c v (squares c) n (of (a o v)) (of (mu o v)) in
+  (zip o (sub o) (found (fun m => zip o (add o) m x)) (found (fun m => m)), transported o (factors c) (F o c v) (G o c v) x).
 
 Definition advected_ : equation o :=
   let after := stored o (advected c) (all_moved o (F o c v) (G o c v) (advected c) (w o c v)) in
@@ -446,6 +465,14 @@ Definition guess : equation o :=
   let first := squares c + n + length (stored o (advected c) (w o c v)) in
   (ended o c v first (3 * n) (a o v) (mu o v),
    y o v ++ change ++ zip o (sub o) (zip o (add o) (y o v) (zip o (add o) change change)) (skipn n (history o v))).
+
+(* The sum of all of μ⁺ and w⁺, and how far the increments are from the identity. *)
+Definition checks : equation o :=
+  let m := (n + length (stored o (advected c) (w o c v)))%nat in
+  let far := flat o (each o (fun f y => match distance f with
+    | Some (k, z) => [[mul o (ratio o z) (inner o (map (firstn k) (hat o f y)) (map (firstn k) (hat o f y)))]] | None => [] end) (factors c) (y o v)) in
+  let all := ended o c v (squares c) (m + 3 * n + S (length far)) (a o v) (mu o v) in
+  (skipn (m + 3 * n) all, fold_left (add o) (firstn m all) (whole o 0) :: far).
 
 (* g⁻¹·w₀, with the identity where no parameter has w₀. *)
 Definition at_attitude : equation o :=

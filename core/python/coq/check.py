@@ -12,6 +12,8 @@ import copy
 import json
 import os
 import re
+import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -25,16 +27,20 @@ OTHER = {"+": "-", "-": "+", "*": "+", "/": "*"}
 TABLE = HERE / "proved.txt"
 LIMIT = 30
 # A divisor and the argument of a function have few terms: sums and products of more aren't computed until all of these are known.
-SHORT = 2000
+SHORT = 300
 ROUNDS = 20
+
+
+def limited() -> None:
+    """Processor time, which other programs don't take."""
+    resource.setrlimit(resource.RLIMIT_CPU, (LIMIT, LIMIT + 5))
 
 
 def compiled(folder: Path, name: str) -> tuple[str, bool]:
     """What Coq says of a file of the folder, and whether it accepts it."""
     command = ["coqc", "-q", "-noglob", "-R", str(folder), "Liestep", str(folder / f"{name}.v")]
-    try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, cwd=folder)
-    except subprocess.TimeoutExpired:
+    done = subprocess.run(command, capture_output=True, text=True, cwd=folder, preexec_fn=limited)
+    if done.returncode == -signal.SIGXCPU:
         return f"more than {LIMIT} s", False
     return done.stdout + done.stderr, done.returncode == 0
 
@@ -53,11 +59,10 @@ def said(folder: Path, name: str, text: str) -> tuple[str, bool]:
     return compiled(folder, name)
 
 
-def prepared(folder: Path, data: dict[str, Any]) -> write.Problem:
-    """A certificate, with the divisors and the rules for functions that its claims ask for."""
-    problem = write.Problem(data)
+def prepared(folder: Path, problem: write.Problem, names: list[str]) -> write.Problem:
+    """A problem with the divisors and the rules for functions that these claims ask for."""
     for _ in range(ROUNDS):
-        answer, _ = said(folder, "Asked", write.questions(problem, SHORT))
+        answer, _ = said(folder, "Asked", write.questions(problem, SHORT, names))
         found = re.search(r"= (\[.*\])\s*: list", re.sub(r"%\w+", "", answer), re.DOTALL)
         if not found or not problem.answer(ast.literal_eval(found[1].replace(";", ","))):
             break
@@ -76,18 +81,25 @@ def proved(folder: Path, problem: write.Problem, names: list[str]) -> bool:
     return is_right and "Closed under the global context" in answer
 
 
+def unproved(folder: Path, problem: write.Problem, names: list[str]) -> list[str]:
+    """Those of some claims of which a proof isn't found."""
+    return [] if proved(folder, problem, names) else [name for name in names if not proved(folder, problem, [name])]
+
+
 def line(folder: Path, data: dict[str, Any]) -> tuple[str, int, bool]:
     """What is proved of a certificate, the number of claims, and whether nothing is refused."""
     try:
-        problem = prepared(folder, data)
+        problem = write.Problem(data)
+        prepared(folder, problem, problem.stated)
     except write.field.Declined as reason:
         return f"declined: {reason}", 0, True
     claims = problem.claims()
     rest = {name.lower(): f"declined {name.lower()}: {reason}" for name, reason in claims.items() if reason}
-    if not proved(folder, problem, problem.stated):
-        for name in problem.stated:
-            if not proved(folder, problem, [name]):
-                rest[name.lower()] = f"{name.lower()}: {verdict(folder, problem, name)}"
+    left = unproved(folder, problem, problem.stated)
+    if left:
+        problem = prepared(folder, write.Problem(data, is_exact=True), left)
+        for name in unproved(folder, problem, left):
+            rest[name.lower()] = f"{name.lower()}: {verdict(folder, problem, name)}"
     count = len(claims) - len(rest)
     is_right = not any(one.endswith((": Wrong", ": Open")) for one in rest.values())
     return "; ".join([f"{count} of {len(claims)} proved", *rest.values()]), count, is_right
@@ -150,7 +162,8 @@ def main() -> int:
 
 def print_mutants(folder: Path, name: str, data: dict[str, Any], step: int) -> None:
     """Which of the changed certificates are accepted; the divisors and rules are those of the right one."""
-    problem, count, passed = prepared(folder, data), 0, []
+    problem, count, passed = write.Problem(data), 0, []
+    prepared(folder, problem, problem.stated)
     for place, other in mutants(data, step):
         count += 1
         if proved(folder, problem.changed(other), problem.stated):

@@ -37,6 +37,7 @@ CLAIMS = {
     "Transport": ("transport", ["finish", "target"]),
     "Advected": ("advected", ["finish"]),
     "Guess": ("guess", ["finish"]),
+    "Checks": ("checks", ["finish"]),
     "Seen": ("seen", ["seen"]),
 }
 # Unknowns of a solve that is stated for any Jacobian, whose determinant stands below.
@@ -91,6 +92,20 @@ class Factor(motion.Factor):
         )
         self.is_rotation = self.listed == motion.KNOWN["SO3"]
 
+    @property
+    def distance(self) -> str:
+        """How a step measures an increment: `Factor.measure` of the reading, as columns and a multiple."""
+        if self.is_translation:
+            return "None"
+        n, grids = self.rows, [[e[at : at + self.rows] for at in range(0, len(e), self.rows)] for e in self.listed]
+
+        def is_skew(k: int) -> bool:
+            return all(e[i][j] + e[j][i] == 0 for e in grids for i in range(k) for j in range(k)) and not any(x for e in grids for row in e[k:] for x in row)
+
+        columns = next((k for k in reversed(range(2, n + 1)) if is_skew(k)), n)
+        multiple = Fraction(1, 8) if self.is_rotation else Fraction(1, 2) if columns < n else Fraction(1)
+        return f"Some ({columns}%nat, {rational(multiple)})"
+
     def grid(self, entries: list[Fraction]) -> str:
         rows = [entries[at : at + self.rows] for at in range(0, len(entries), self.rows)]
         return listed(listed(rational(entry) for entry in row) for row in rows)
@@ -98,14 +113,17 @@ class Factor(motion.Factor):
     def written(self) -> str:
         chart = "true" if self.chart == "product" else "false"
         generators, components = (listed(self.grid(e) for e in each) for each in (self.listed, self.coefficients))
-        return f"{{| size := {self.rows}; is_product := {chart}; generators := {generators}; components := {components} |}}"
+        return f"{{| size := {self.rows}; is_product := {chart}; generators := {generators}; components := {components}; distance := {self.distance} |}}"
 
 
 class Problem:
-    """A certificate, with the variables that its claims are of."""
+    """A certificate, with the variables that its claims are of.
 
-    def __init__(self, data: dict[str, Any]) -> None:
-        self.data = data
+    Where it isn't exact, it is more general: roots are any numbers, whatever their squares, and elements of the group any matrices.
+    """
+
+    def __init__(self, data: dict[str, Any], is_exact: bool = False) -> None:
+        self.data, self.is_exact = data, is_exact
         self.factors = [Factor(one) for one in data["factors"]]
         self.counts = [len(factor.generators) for factor in self.factors]
         self.n = sum(self.counts)
@@ -132,8 +150,8 @@ class Problem:
 
     def placed(self) -> list[list[int]]:
         """The variables of each array, in the order of Step.v."""
-        n, shapes = self.n, [one for one in self.carried if one.action not in ("relative", "configuration")]
-        free, in_group = sum(one.rows * one.columns for one in shapes), len(shapes) < len(self.carried)
+        n, free = self.n, sum(one.rows * one.columns for one in self.carried)
+        in_group = any(one.action in ("relative", "configuration") for one in self.carried)
         h, half, target, momentum = self.new(1), self.new(n), self.new(n), self.new(n)
         parameters: list[int] = []
         for one in self.data["parameters"]:
@@ -250,7 +268,9 @@ class Problem:
             self.rules.append("AtOrigin")
             return
         self.places[12] += self.new(1)
-        if function == "sqrt":
+        if function == "sqrt" and not self.is_exact:
+            self.rules.append(f"RootAt {value} (Number 1 1) (Number 0 1) {x}")
+        elif function == "sqrt":
             below = product([(one, (k + 1) // 2) for one, k in known])
             square = product([(argument, 1), *((one, k % 2) for one, k in known)])
             self.rules.append(f"RootAt {value} {self.text(below)} {self.text(square)} {x}")
@@ -327,6 +347,7 @@ class Problem:
             "parameters": shapes,
             "advected": listed(advected),
             "power": self.data["power"],
+            "in_products": str(self.is_exact).lower(),
             **self.texts,
             **self.programs,
         }
@@ -384,7 +405,7 @@ def verdict(problem: Problem, name: str) -> str:
     return problem.written() + f"Eval vm_compute in found data {name}.\n"
 
 
-def questions(problem: Problem, most: int) -> str:
-    """The file of a certificate, with what a check asks for; products of more terms are left out."""
+def questions(problem: Problem, most: int, names: list[str]) -> str:
+    """The file of a certificate, with what a check of these claims asks for; products of more terms are left out."""
     printing = "Set Printing Depth 1000000.\nSet Printing Width 1000.\n"
-    return problem.written() + printing + f"Eval vm_compute in asked {most} data {listed(problem.stated)}.\n"
+    return problem.written() + printing + f"Eval vm_compute in asked {most} data {listed(names)}.\n"

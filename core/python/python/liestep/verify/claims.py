@@ -14,7 +14,7 @@ from .motion import Carried, Factor, Term, drawn_field, stored_kind
 from .text import long_decimals
 
 Arrays = dict[str, list[Dual]]
-DRAWS = 100
+DRAWS = 16
 # A claim on two rotations takes four square roots at once, each of which half of the points have.
 POINTS = 2000
 
@@ -378,21 +378,31 @@ def restored(step: Step) -> bool:
     return same(step.run("restored", attitude=sum((one.flat for one in g), [])), expected)
 
 
-def defect(step: Step) -> bool:
-    """A square stands for what is positive, and so its negative for what is negative."""
-    inside = step.elements(drawn(step.n))
-    found = [same(step.run("defect", attitude=sum((one.flat for one in inside), [])), [ZERO])]
-    for is_positive in (True, False):
-        expected = ZERO
-        for at, factor in enumerate(step.factors):
+def off(factor: Factor, is_positive: bool) -> tuple[Matrix, Dual]:
+    """A matrix that isn't in the group, and how far it is: of rotations and translations; of others it is in, and that is zero.
+
+    A square stands for what is positive, and so its negative for what is negative.
+    """
+    for _ in range(DRAWS):
+        g, one = Matrix.of(drawn(factor.rows**2), factor.rows), Matrix.one(factor.rows)
+        try:
+            if factor.is_translation:
+                shared = [not any(e.flat[at].a for e in factor.generators) for at in range(factor.rows**2)]
+                return g, norm(Matrix([[x for x, is_shared in zip((g - one).flat, shared, strict=True) if is_shared]]))
             if factor.is_rotation:
-                g = Matrix.of(drawn(9), 3)
-                det = g.det
-                if same([(det * det).applied("sqrt")], [det]) != is_positive:
-                    g, det = -g, -det
-                inside[at], expected = g, expected + norm(orthogonality(g)) + (ZERO if is_positive else ONE - det)
-        found.append(same(step.run("defect", attitude=sum((one.flat for one in inside), [])), [expected]))
-    return all(found)
+                g = g if same([(g.det * g.det).applied("sqrt")], [g.det]) == is_positive else -g
+                return g, norm(orthogonality(g)) + (ZERO if is_positive else ONE - g.det)
+            return factor.element(drawn(len(factor.generators))), ZERO
+        except Unlucky:
+            continue
+    raise Unlucky
+
+
+def defect(step: Step) -> bool:
+    inside = [(g, ZERO) for g in step.elements(drawn(step.n))]
+    places = [inside, *([off(factor, is_positive) for factor in step.factors] for is_positive in (True, False))]
+    found = [step.run("defect", attitude=sum((g.flat for g, _ in each), [])) for each in places]
+    return same(sum(found, []), [total(far for _, far in each) for each in places])
 
 
 def at_rest(step: Step, point: Point, h: Dual) -> Matrix:
