@@ -48,7 +48,7 @@ fn kept<S: Regular<Scalar = f64>>(stepper: &Stepper<S>, mut state: StateOf<S>, s
         let velocity = stepper.velocity(&state);
         let mut rates = Vec::new();
         scene.constrained(None, &state.advected(), &mut |_, own| {
-            rates.push(liestep::numbers::Coordinates::dot(&own, &velocity))
+            rates.push(liestep::numbers::Coordinates::dot(&own, &velocity));
         });
         assert!(!values.is_empty() && values.len() == rates.len());
         let largest = |all: &[f64]| all.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
