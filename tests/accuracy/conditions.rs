@@ -282,6 +282,14 @@ fn processed_splittings_satisfy_their_order_conditions() {
     }
 }
 
+/// A fourth drift reduces the error at order 7 to less than a tenth.
+#[test]
+fn a_fourth_drift_is_worth_its_cost() {
+    let [three, four] =
+        [ProcessedScheme::SIX_A, ProcessedScheme::SIX_C].map(|scheme| by_length(&processed(&scheme), 7)[6]);
+    assert!(four < 0.1 * three, "{three:e}, {four:e}");
+}
+
 #[test]
 fn a_wrong_digit_of_a_processor_is_found() {
     let mut parts = processed(&ProcessedScheme::SIX_A);

@@ -13,13 +13,14 @@ fn exact(top: &HeavyTop) -> ExactBody {
     ExactBody::new(&top.ordinary_inertia())
 }
 
-/// The orders on tops with and without symmetry. The processor's error is as large as the kernel's, and on the chaotic
-/// top they cancel in part.
+/// The orders on tops with and without symmetry. The processor's error is as large as the kernel's, except for `SIX_C`, and
+/// on the chaotic top they cancel in part.
 #[test]
 fn processed_splittings_have_their_orders() {
     for (scheme, coarsest) in [
         (ProcessedScheme::SIX_A, 240),
         (ProcessedScheme::SIX_B, 160),
+        (ProcessedScheme::SIX_C, 160),
         (ProcessedScheme::FOUR_A, 500),
         (ProcessedScheme::FOUR_B, 500),
         (ProcessedScheme::FOUR_C, 500),

@@ -106,8 +106,14 @@ fn a_splitting_with_force_gradients() {
 #[test]
 fn a_processed_splitting() {
     let axes = Rotation3::new(Vector3::new(0.4, -0.3, 0.7)).into_inner();
-    let schemes = [ProcessedScheme::SIX_A, ProcessedScheme::SIX_B, ProcessedScheme::FOUR_A, ProcessedScheme::FOUR_C];
-    for (scheme, h) in schemes.into_iter().zip([0.1, -0.2, 0.05, 0.1]) {
+    let schemes = [
+        ProcessedScheme::SIX_A,
+        ProcessedScheme::SIX_B,
+        ProcessedScheme::SIX_C,
+        ProcessedScheme::FOUR_A,
+        ProcessedScheme::FOUR_C,
+    ];
+    for (scheme, h) in schemes.into_iter().zip([0.1, -0.2, 0.1, 0.05, 0.1]) {
         let processed = |number: Option<usize>| {
             let of_flow = number.filter(|&number| number >= 17).map(|number| number - 17);
             let scene = heavy(MOMENTS, &axes, 9.81, unit(number.filter(|&number| number < 17)));
