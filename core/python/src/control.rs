@@ -63,7 +63,8 @@ struct Figures {
 
 impl Planned {
     fn of(plan: ControlPlan<Whole<Backend>>) -> Self {
-        let ControlPlan { stepper, states, inputs, duration, cost, multipliers, residual, iterations, verdict, .. } = plan;
+        let ControlPlan { stepper, states, inputs, duration, cost, multipliers, residual, iterations, verdict, .. } =
+            plan;
         let residual = residual.largest();
         Self {
             stepper,
