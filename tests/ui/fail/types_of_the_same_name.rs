@@ -4,7 +4,7 @@ struct Inertia;
 
 struct Vector3<T>([T; 3]);
 
-#[lagrangian(group = SO3, l_d = ((F - I) * A * (F - I).transpose()).trace() / (2.0 * h) - h * v.dot(&(F * v)))]
+#[lagrangian(group = SO3, l_d = ((F - I) * A * (F - I).transpose()).trace() / h - h * v.dot(&(F * v)))]
 struct Body {
     A: Inertia,
     v: Vector3<f64>,
