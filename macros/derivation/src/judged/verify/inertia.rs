@@ -55,7 +55,14 @@ pub fn kinetic_part(of: Subject) -> KineticPart {
     let inertias = samples.iter().map(|sample| at_identity(sample, &graph, &inertia));
     let inertias = inertias.map(|entries| Value { rows: dimension, columns: dimension, entries });
     let is_used = |name: Name| lowered.names.get(&name).is_some_and(|&id| derived.limit.inertia.contains(id));
-    classified(declaration, &is_used, inertias.collect(), (&exact, &sample.values))
+    let found = classified(declaration, &is_used, inertias.collect(), (&exact, &sample.values));
+    // A discrete Lagrangian may name any symmetric matrix `J_d`.
+    let is_named_so =
+        |field: usize| declaration.fields.get(field).is_some_and(|one| one.kind != FieldKind::StandardInertia);
+    match found {
+        KineticPart::OtherInertia(field) if is_named_so(field) => KineticPart::Regular,
+        other => other,
+    }
 }
 
 /// The kinetic part by its second derivative in the field, and by its sign at sample values. `is_used` selects the
