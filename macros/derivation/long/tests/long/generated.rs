@@ -268,7 +268,7 @@ fn compile(declarations: &[String]) {
     );
     fs::write(folder.join("Cargo.toml"), manifest).expect("a file");
     fs::copy(core.join("../Cargo.lock"), folder.join("Cargo.lock")).expect("a file");
-    let uses = "use liestep::groups::{R1, R3, SE2, SO3}; use liestep::{NonstandardInertia, constraint, force, lagrangian}; use nalgebra::{Matrix3, Vector3};";
+    let uses = "use liestep::groups::{R1, R3, SE2, SO3}; use liestep::mechanics::Inertia; use liestep::{NonstandardInertia, constraint, force, lagrangian}; use nalgebra::{Matrix3, Vector3};";
     for chunk in declarations.chunks(100) {
         let module = |(at, text): (usize, &String)| format!("pub mod m{at} {{ {uses} {text} }}\n");
         let text: String = chunk.iter().enumerate().map(module).collect();

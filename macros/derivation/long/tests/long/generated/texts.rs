@@ -88,7 +88,7 @@ pub(super) const KINDS: [Kind; 12] = [
     },
     Kind {
         head: "group = SO3, velocity = xi, advected(w = up), l = ",
-        beginnings: &["0.5 * xi.dot(&(J * xi))", "{ let p = J * xi; 0.5 * p.dot(&xi) }"],
+        beginnings: &["0.5 * xi.dot(&(J_c * xi))", "{ let p = J_c * xi; 0.5 * p.dot(&xi) }"],
         tail: ", discretise = trapezoid(Cayley)",
         weight: "",
         vectors: &["w", "(A * w)", "a"],
@@ -96,7 +96,7 @@ pub(super) const KINDS: [Kind; 12] = [
     },
     Kind {
         head: "group = SO3, velocity = xi, advected(w = up), given(u = wind), l = ",
-        beginnings: &["0.5 * xi.dot(&(J * xi)) + w.dot(&xi) - w.dot(&u)"],
+        beginnings: &["0.5 * xi.dot(&(J_c * xi)) + w.dot(&xi) - w.dot(&u)"],
         tail: ", discretise = chord(Cayley)",
         weight: "",
         vectors: &["w", "(A * w)", "u"],
@@ -104,7 +104,7 @@ pub(super) const KINDS: [Kind; 12] = [
     },
     Kind {
         head: "group(F = SO3, s = R1), velocity(xi, v), advected(w = up.seen_from(F), y = s.seen_from(space)), l = ",
-        beginnings: &["0.5 * xi.dot(&(J * xi)) + 0.5 * m * v * v - 0.5 * k * y * y"],
+        beginnings: &["0.5 * xi.dot(&(J_c * xi)) + 0.5 * m * v * v - 0.5 * k * y * y"],
         tail: ", discretise = trapezoid(Cayley)",
         weight: "",
         vectors: &["w", "(A * w)", "a"],
@@ -134,8 +134,8 @@ pub(super) const KINDS: [Kind; 12] = [
     },
 ];
 #[rustfmt::skip]
-const FIELDS: [(&str, &str); 8] = [
-    ("J", "NonstandardInertia<f64>"), ("A", "Matrix3<f64>"), ("a", "Vector3<f64>"), ("b", "Vector3<f64>"),
+const FIELDS: [(&str, &str); 9] = [
+    ("J", "NonstandardInertia<f64>"), ("J_c", "Inertia<f64>"), ("A", "Matrix3<f64>"), ("a", "Vector3<f64>"), ("b", "Vector3<f64>"),
     ("up", "Vector3<f64>"), ("wind", "Vector3<f64>"), ("k", "f64"), ("m", "f64"),
 ];
 /// Replacements that make a declaration wrong.
