@@ -98,6 +98,24 @@ fn given_times_are_shown_in_order() {
     }
 }
 
+/// A requested time at the run's end is shown where rounding has the last step end before it.
+#[test]
+fn the_end_is_shown_where_it_is_rounded() {
+    let (h, end) = (2.0 / 49.0, 2.0);
+    assert!(49.0 * h < end);
+    let (stepper, mut state) = top(h);
+    let seen = RefCell::new(Vec::new());
+    let times = [1.0, end, end * (1.0 + 1e-12)];
+    stepper
+        .observed(&mut state)
+        .at(times, |now| seen.borrow_mut().push((now.time(), now.attitude())))
+        .until(end)
+        .unwrap();
+    let seen = seen.into_inner();
+    assert_eq!(seen.iter().map(|row| row.0).collect::<Vec<_>>(), [1.0, end]);
+    assert_eq!(seen[1].1, state.attitude());
+}
+
 /// Events within one step are reported in order, prescribed times included, and the steps stay unchanged.
 #[test]
 fn events_happen_in_their_order() {

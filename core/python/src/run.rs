@@ -148,9 +148,16 @@ pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course)
     let tables = course.events.iter().map(|_| RefCell::new((recorder_of(stepper, Columns::new(0)), Vec::new())));
     let tables: Vec<_> = tables.collect();
     let look = course.every.max(1) * LOOK.div_ceil(course.every.max(1));
+    // The last step may end before the time that was asked for, by as much as a number of steps may be off.
+    #[allow(clippy::cast_precision_loss)] // 9e15 at most
+    let end = stepper.time(&state) + steps as f64 * stepper.step_size();
     let mut observed = Run::new(stepper, &mut state).every(course.every, row).every(look, |_| signals.look());
     if let Some(times) = &course.times {
-        observed = observed.at(times.iter().copied(), row);
+        let is_behind = |time: f64| (time - end) * stepper.step_size().signum() > 8.0 * f64::EPSILON * end.abs();
+        let times = times.iter().map(move |&time| {
+            if !is_varied && is_behind(time) && (time - end).abs() <= ROUNDING * end.abs() { end } else { time }
+        });
+        observed = observed.at(times, row);
     }
     for (watch, table) in course.events.iter().zip(&tables) {
         let function = watch.function(&stepper.layout().factors, &signals)?;

@@ -99,8 +99,8 @@ def test_order_momentum_and_relation(name):
 
 def test_a_product_of_any_groups():
     weight, spin = [0.3, -0.2, 0.4, 3], [0.9, 0.4, -2]
-    numbers = {"J": np.diag([0.3, 0.4, 0.5]), "c": 0.4, "up": [0, 0, 1]}
-    wheel = "((Q - I) * J * (Q - I).transpose()).trace() / (2 * h)"
+    numbers = {"J_d": np.diag([0.3, 0.4, 0.5]), "c": 0.4, "up": [0, 0, 1]}
+    wheel = "((Q - I) * J_d * (Q - I).transpose()).trace() / (2 * h)"
     weighed = "- h / 2 * (({}) * (1 + c * u.z) + ({}) * (1 + c * (Q.transpose() * u).z))"
     body = ls.lagrangian(
         {"Q": "SO3", "F": "SE3"},

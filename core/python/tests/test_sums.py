@@ -144,8 +144,8 @@ def test_sums_on_other_groups():
 def test_sums_on_products():
     # Two bodies that know nothing of each other move as each does alone.
     pair = {"F_1": "SO3", "F_2": "SO3"}
-    kinetic = " + ".join(f"((F_{k} - I) * J_{k} * (F_{k} - I).transpose()).trace() / (2 * h)" for k in (1, 2))
-    both = ls.lagrangian(pair, l_d=kinetic, J_1=J_D, J_2=2 * J_D)
+    kinetic = " + ".join(f"((F_{k} - I) * J_{k}_d * (F_{k} - I).transpose()).trace() / (2 * h)" for k in (1, 2))
+    both = ls.lagrangian(pair, l_d=kinetic, J_1_d=J_D, J_2_d=2 * J_D)
     alone = [ls.body(J), ls.body(2 * np.array(J))]
     for up, m in (([0, 0, 1], 1), ([0, 1, 0], 2), ([1, 0, 0], 3)):
         text = "-h/2 * m * (u.dot(rho + F_1 * rho) + 2 * v.dot(rho + F_2 * rho))"

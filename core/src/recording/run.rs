@@ -83,6 +83,9 @@ struct Observers<'a, I: Integrator> {
     seldom: u64,
 }
 
+/// The relative rounding of a time that is a whole number of steps.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
 /// An observer of every `every`-th step.
 struct RegularObserver<'a, I: Integrator> {
     every: u64,
@@ -234,6 +237,9 @@ impl<'a, I: Integrator> Run<'a, I> {
             }
         }
         ended.steps = I::steps(self.state) - start;
+        if matches!(ended.reason, Reason::Done) {
+            self.show_timed(None, reported(integrator.time(self.state)) * (1.0 + ROUNDED), &mut ended)?;
+        }
         Ok(ended)
     }
 
@@ -356,9 +362,10 @@ where
     I::Scalar: Into<f64>,
 {
     /// Observes the motion at these times, s, also between the steps: as [`Integrator::part`] of one. A time that is
-    /// the end of a step, to the bit, has the state after that step.
+    /// the end of a step, to the bit, has the state after that step; so has one after the last step by no more than the
+    /// rounding of the run's end.
     ///
-    /// The times are in the order of the motion, and none lies before it; those after the end of the run are ignored.
+    /// The times are in the order of the motion, and none lies before it; later ones than the end of the run are ignored.
     pub fn at<R: Answer>(
         mut self,
         times: impl IntoIterator<Item = f64, IntoIter: 'a>,
@@ -433,8 +440,7 @@ where
         if !can_be_counted {
             return Err(RunError::End { asked: time });
         }
-        // The rounding of a whole number of steps in a time that is a multiple of the step.
-        let rounded = 1.0 - 4.0 * f64::EPSILON;
+        let rounded = 1.0 - ROUNDED;
         if self.integrator.length(self.state).is_some() {
             let is_there = Rc::new(Cell::new(false));
             let (seen, end) = (Rc::clone(&is_there), steps * rounded);
