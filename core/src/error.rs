@@ -285,6 +285,17 @@ pub enum SetupError {
     },
 }
 
+impl SetupError {
+    /// Checks the number of a list's numbers.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError::Length`] if it is another than expected.
+    pub const fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), Self> {
+        if found == expected { Ok(()) } else { Err(Self::Length { what, found, expected }) }
+    }
+}
+
 /// The body that the kinetic part belongs to, if there are several.
 fn of_body(body: Option<usize>) -> String {
     body.map_or_else(String::new, |body| format!(" of the body or factor {body} (from zero)"))

@@ -319,4 +319,6 @@ mod _native {
     use crate::file::{File, FileRun, library, ratio};
     #[pymodule_export]
     use crate::picture::{page, picture};
+    #[pymodule_export]
+    const OFF_UNIT: f64 = liestep_scene::OFF_UNIT;
 }

@@ -59,9 +59,6 @@ enum Source {
     Function(Py<PyAny>),
 }
 
-/// Largest deviation of a direction's length from one.
-const NEAR_ONE: f64 = 1e-3;
-
 fn length(vector: &[f64]) -> f64 {
     vector.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
@@ -127,7 +124,7 @@ impl Changes {
             Ok(numbers) if numbers.len() == change.width => {
                 value.copy_from_slice(&numbers);
                 let length = length(value);
-                if change.is_direction && (length - 1.0).abs() > NEAR_ONE {
+                if change.is_direction && (length - 1.0).abs() > liestep_scene::OFF_UNIT {
                     let name = &change.name;
                     let message =
                         format!("`{name}` is a direction, and isn't of length one but of {length} at {time} s");

@@ -36,7 +36,7 @@ pub use file::histogram::EndHistogram;
 pub use file::joint::changing_numbers;
 pub use file::kepler::orbit;
 pub use file::mistake::{Kind, Mistake, visible};
-pub use file::quantity::ratio;
+pub use file::quantity::{OFF_UNIT, ratio};
 pub use file::scene::Scene;
 
 pub use file::sample::{BodySample, Sample};

@@ -10,7 +10,7 @@ use liestep_derivation::whole::HamiltonianStep;
 
 use super::codes::layout;
 use super::linear::are_finite;
-use super::stepper::{WholeError, check_length, write_or_nan};
+use super::stepper::{WholeError, write_or_nan};
 use crate::code::Backend;
 use crate::declaration::{Declaration, Ready, ready_each};
 use crate::error::LateError;
@@ -193,8 +193,8 @@ where
     /// A velocity needn't have a momentum, so that a start has a momentum: at rest it is zero.
     fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
         let layout = &self.equations.layout;
-        check_length("attitude", attitude, layout.entries())?;
-        check_length("velocity", velocity, layout.components())?;
+        SetupError::check_length("attitude", attitude.len(), layout.entries())?;
+        SetupError::check_length("velocity", velocity.len(), layout.components())?;
         if velocity.iter().any(|component| *component != 0.0) {
             let cause =
                 "of a Hamiltonian starts with a momentum, as no momentum may have this velocity; give a `momentum`";

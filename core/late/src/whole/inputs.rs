@@ -7,7 +7,7 @@ use liestep::motion::{Propagator, StepReport};
 use liestep::{SetupError, StepError};
 
 use super::limit::Limit;
-use super::stepper::{Whole, check_length};
+use super::stepper::Whole;
 use super::tangent::TangentCode;
 use crate::code::Backend;
 
@@ -51,7 +51,7 @@ impl<B: Backend<f64>> Whole<B> {
     ///
     /// The errors of [`with`](Self::with), after which the stepper is as it was.
     pub fn take(&mut self, numbers: &[f64], h: f64) -> Result<(), SetupError> {
-        check_length("parameters", numbers, self.numbers.len())?;
+        SetupError::check_length("parameters", numbers.len(), self.numbers.len())?;
         let is_known = |(at, folds): (usize, &bool)| !folds || self.numbers[at].to_bits() == numbers[at].to_bits();
         if self.h.to_bits() != h.to_bits() || !self.codes.folds.iter().enumerate().all(is_known) {
             *self = self.with(numbers, h)?;

@@ -6,7 +6,7 @@ use liestep::{SetupError, StepError};
 use nalgebra::DMatrix;
 
 use super::algebra::{adjoint, displaced, displacement, tangent};
-use super::stepper::{Whole, check_length};
+use super::stepper::Whole;
 use super::tangent::TangentCode;
 use crate::code::Backend;
 
@@ -20,7 +20,7 @@ impl<B: Backend<f64>> Whole<B> {
     pub fn steered(&self, places: Vec<usize>) -> Result<Self, SetupError> {
         let (all, most) = (self.numbers().len(), places.iter().copied().max());
         if most.is_some_and(|most| most >= all) {
-            check_length("inputs", self.numbers(), most.unwrap_or(0) + 1)?;
+            SetupError::check_length("inputs", all, most.unwrap_or(0) + 1)?;
         }
         Ok(Self { inputs: Some(places.into()), ..self.clone() })
     }

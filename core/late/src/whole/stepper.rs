@@ -114,7 +114,7 @@ impl<B: Backend<f64>> Whole<B> {
     ///
     /// The errors of [`Stepper::new`](liestep::Stepper::new).
     pub fn with(&self, numbers: &[f64], h: f64) -> Result<Self, SetupError> {
-        check_length("parameters", numbers, self.numbers.len())?;
+        SetupError::check_length("parameters", numbers.len(), self.numbers.len())?;
         Ok(Self { inputs: self.inputs.clone(), ..Self::shared(&self.codes, numbers.into(), h, self.method)? })
     }
 
@@ -175,8 +175,8 @@ impl<B: Backend<f64>> Whole<B> {
     /// The errors of [`Stepper::start_with_momentum`](liestep::Stepper::start_with_momentum).
     pub fn start_with_momentum(&self, attitude: &[f64], momentum: &[f64]) -> Result<Box<[f64]>, SetupError> {
         let sizes = &self.codes.sizes;
-        check_length("attitude", attitude, sizes.entries)?;
-        check_length("momentum", momentum, sizes.n)?;
+        SetupError::check_length("attitude", attitude.len(), sizes.entries)?;
+        SetupError::check_length("momentum", momentum.len(), sizes.n)?;
         self.check_attitude(attitude)?;
         if !are_finite(momentum) {
             return Err(SetupError::NonFinite { what: "momentum" });
@@ -336,19 +336,14 @@ impl<B: Backend<f64>> Whole<B> {
     }
 }
 
-pub(super) fn check_length(what: &'static str, numbers: &[f64], expected: usize) -> Result<(), SetupError> {
-    let found = numbers.len();
-    if found == expected { Ok(()) } else { Err(SetupError::Length { what, found, expected }) }
-}
-
 impl<B: Backend<f64>> Propagator for Whole<B> {
     fn layout(&self) -> &Layout {
         &self.codes.layout
     }
 
     fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
-        check_length("attitude", attitude, self.codes.sizes.entries)?;
-        check_length("velocity", velocity, self.codes.sizes.n)?;
+        SetupError::check_length("attitude", attitude.len(), self.codes.sizes.entries)?;
+        SetupError::check_length("velocity", velocity.len(), self.codes.sizes.n)?;
         if !are_finite(velocity) {
             return Err(SetupError::NonFinite { what: "velocity" });
         }

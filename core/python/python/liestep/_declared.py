@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from . import _native
 from ._arrays import floats
-from ._signal import NEAR_ONE, Signal, diagonal
+from ._signal import Signal, diagonal
 from .errors import DeclarationError
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def _value(name: str, value: Any) -> Value:
 def _direction(name: str, value: Value) -> Value:
     numbers = value.numbers
     length = sum(number * number for number in numbers) ** 0.5
-    if not abs(length - 1) <= NEAR_ONE:
+    if not abs(length - 1) <= _native.OFF_UNIT:
         unit = ", ".join(f"{number / length:.6g}" for number in numbers) if 0 < length < float("inf") else "0, 0, 1"
         raise DeclarationError(f"`{name}` is a direction, and isn't of length one but of {length:.6g}: write [{unit}]")
     if value.signal is not None and not value.signal.has_unit_values:

@@ -12,9 +12,6 @@ from .errors import SceneError, SetupError
 if TYPE_CHECKING:
     from ._arrays import Array
 
-#: Largest deviation of a direction's length from one.
-NEAR_ONE = 1e-3
-
 
 class Signal:
     """A quantity over time, made by `liestep.signal`: a value for any parameter of a term.
@@ -86,7 +83,7 @@ class Signal:
         if self._source[2] == "orbit":
             return bool(self._source[1][0] == "nadir")
         lengths = np.linalg.norm(self._source[1].reshape(len(self._source[0]), -1), axis=1)
-        return bool((abs(lengths - 1) <= NEAR_ONE).all())
+        return bool((abs(lengths - 1) <= _native.OFF_UNIT).all())
 
     @property
     def source(self) -> _native.Signal | _native.Along | Callable[[list[float]], list[float]]:

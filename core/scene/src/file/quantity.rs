@@ -184,7 +184,7 @@ fn finite<E: Error>(value: f64) -> Result<f64, E> {
 }
 
 /// Largest deviation of a direction's length from one, which parts with three digits may have.
-const OFF_UNIT: f64 = 1e-3;
+pub const OFF_UNIT: f64 = 1e-3;
 
 struct NumberOrText<Q>(PhantomData<Q>);
 

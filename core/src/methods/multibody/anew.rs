@@ -1,6 +1,6 @@
 //! Steppers of the same bodies and joints, with other numbers of their terms or with another step.
 
-use super::stepper::{MultibodyStepper, check_length};
+use super::stepper::MultibodyStepper;
 use super::system::Multibody;
 use crate::error::SetupError;
 
@@ -63,7 +63,7 @@ impl MultibodyStepper {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn with(&self, system: Multibody, h: f64) -> Result<Self, SetupError> {
-        check_length("bodies", system.bodies, self.bodies())?;
+        SetupError::check_length("bodies", system.bodies, self.bodies())?;
         let system = Multibody { joints: self.system.joints.clone(), ..system };
         system.check_terms()?;
         self.like(if self.has_point_masses { system.with_point_masses() } else { system }, h)

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use nalgebra::{Vector3, Vector6};
 
 use super::state::body_of;
-use super::stepper::{MultibodyStepper, check_length};
+use super::stepper::MultibodyStepper;
 use super::workspace::with_workspace;
 use crate::error::{SetupError, StepError};
 use crate::groups::LieGroup as _;
@@ -58,8 +58,8 @@ impl Propagator for MultibodyStepper {
     }
 
     fn start(&self, attitude: &[f64], velocity: &[f64]) -> Result<Box<[f64]>, SetupError> {
-        check_length("attitude", attitude.len(), self.layout.entries())?;
-        check_length("velocity", velocity.len(), self.layout.components())?;
+        SetupError::check_length("attitude", attitude.len(), self.layout.entries())?;
+        SetupError::check_length("velocity", velocity.len(), self.layout.components())?;
         let bodies: Vec<_> = attitude.chunks(self.offsets.attitudes() / self.bodies()).map(body_of).collect();
         let velocities: Vec<_> = velocity.chunks(6).map(Vector6::from_column_slice).collect();
         Self::start(self, &bodies, &velocities)

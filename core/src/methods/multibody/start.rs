@@ -7,7 +7,7 @@ use nalgebra::Vector6;
 
 use super::constraint::Place;
 use super::equations::{Equations, Widest, gap};
-use super::stepper::{MultibodyStepper, check_length};
+use super::stepper::MultibodyStepper;
 use super::{Body, parts, place};
 use crate::error::SetupError;
 use crate::groups::{CayleyRetraction, LieGroup as _, Retraction};
@@ -49,7 +49,7 @@ impl MultibodyStepper {
     /// The errors of [`start`](Self::start).
     pub fn start_with_momentum(&self, attitudes: &[Body], momenta: &[Vector6<f64>]) -> Result<Box<[f64]>, SetupError> {
         self.check_attitudes(attitudes)?;
-        check_length("momentum", 6 * momenta.len(), 6 * self.bodies())?;
+        SetupError::check_length("momentum", 6 * momenta.len(), 6 * self.bodies())?;
         if !is_finite(momenta) {
             return Err(SetupError::NonFinite { what: "momentum" });
         }
@@ -95,7 +95,7 @@ impl MultibodyStepper {
 
     pub(super) fn check_attitudes(&self, attitudes: &[Body]) -> Result<(), SetupError> {
         let all = self.offsets.attitudes();
-        check_length("attitude", all / self.bodies() * attitudes.len(), all)?;
+        SetupError::check_length("attitude", all / self.bodies() * attitudes.len(), all)?;
         attitudes.iter().try_for_each(check_attitude)
     }
 
@@ -178,6 +178,6 @@ fn is_finite(vectors: &[Vector6<f64>]) -> bool {
 
 /// Checks that these are finite velocities of all bodies.
 fn check_velocities(velocities: &[Vector6<f64>], bodies: usize) -> Result<(), SetupError> {
-    check_length("velocity", 6 * velocities.len(), 6 * bodies)?;
+    SetupError::check_length("velocity", 6 * velocities.len(), 6 * bodies)?;
     if is_finite(velocities) { Ok(()) } else { Err(SetupError::NonFinite { what: "velocity" }) }
 }

@@ -445,11 +445,6 @@ impl MultibodyStepper {
     }
 }
 
-/// Checks the length of a list of numbers.
-pub(super) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), SetupError> {
-    if found == expected { Ok(()) } else { Err(SetupError::Length { what, found, expected }) }
-}
-
 /// The radius of gyration of a body with this inertia, m.
 fn length(inertia: &Matrix6<f64>) -> f64 {
     let trace = |first: usize| (first..first + 3).map(|k| inertia[(k, k)]).sum::<f64>();
