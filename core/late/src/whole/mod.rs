@@ -16,12 +16,11 @@
 //! Deliberately not here: joints and systems. They are typed, and behind the same
 //! [`Propagator`](liestep::motion::Propagator). Methods of SO(3) alone are the library's own, by a scene that runs programs.
 //!
-//! The files depend on each other in one direction: `{abreast, plant → {algebra, forwards, inputs}} → stepper`,
-//! `methods → {collocation, compensated, hamiltonian, rotating, density}`,
-//! `{collocation, compensated, hamiltonian} → stepper`,
-//! `{density, forwards → {derivatives → tape, tangent} → {varied → course, slopes → limit}, pace} → {stepper, lengths}`,
-//! `inputs → {tangent → composed, limit}` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit →
-//! {codes, linear}`.
+//! The files depend on each other in one direction: `methods → {collocation, compensated, course, hamiltonian, rotating}`,
+//! `{abreast, collocation, compensated, hamiltonian, lengths} → stepper`, `pace → lengths`, `plant → {algebra, tangent}`,
+//! `inputs → tangent → composed`, `{density, forwards → {derivatives → {algebra, tape → slopes → limit}, tangent}} → varied →
+//! {course, lengths}` and `stepper → composed → step → diagnosis → {care → iteration, constants} → limit → {codes, linear}`.
+//! `signal` needs none of them.
 
 mod abreast;
 mod algebra;
