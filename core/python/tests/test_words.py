@@ -57,3 +57,17 @@ def test_a_call_with_other_arguments_says_what_to_write(call, message):
     with pytest.raises(ls.CallError) as found:
         call(heavy_top())
     assert message in str(found.value) and isinstance(found.value, TypeError)
+
+
+@pytest.mark.parametrize("l,place", [
+    ("1/2 * Omega.dot((J * Omega)", (1, 16)), ("1/2 * Omega.dot(J * Omega))", (1, 27)), ("1/2\n * Omega.dot(J * Omega]", (2, 23)),
+])
+def test_a_bracket_without_another_has_its_place(l, place):  # noqa: E741
+    with pytest.raises(ls.DeclarationError) as found:
+        declared(l)
+    assert (found.value.line, found.value.column) == place and "bracket" in str(found.value)
+
+
+def test_a_vector_in_the_place_of_a_matrix_is_said_to_be_a_diagonal():
+    with pytest.raises(ls.DeclarationError, match=r"pass `A=np.diag\(\[1, 2, 5\]\)`"):
+        ls.lagrangian("SO3", l="1/2 * Omega.dot(A * Omega)", discretise="trapezoid(Cayley)", A=[1, 2, 5])
