@@ -188,3 +188,9 @@ def test_a_start_by_a_momentum():
     for wrong in ({}, {"velocity": [0, 0, 1], "momentum": [0, 0, 4]}, {"momentum": [1, 2]}, {"momentum": [0, 0, float("nan")]}):
         with pytest.raises(ls.SetupError, match="momentum"):
             stepper.run(**wrong, until=1)
+
+
+def test_the_axes_of_a_plot_have_units(top):
+    pytest.importorskip("matplotlib").use("Agg")
+    axes = top.stepper(0.01).run(velocity=[0, 0, 12], until=0.1).plot().axes
+    assert [one.get_ylabel() for one in axes] == ["velocity, rad/s", "energy from its start, J"] and axes[1].get_xlabel() == "time, s"

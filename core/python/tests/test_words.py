@@ -42,3 +42,32 @@ def test_a_step_without_a_solution_has_words_of_python():
     said = str(found.value)
     assert 'let `substeps` divide such steps. On SO(3) `ls.body(J, kinetic="geodesic")` turns a spin exactly' in said
     assert "or_substeps" not in said and "Body`" not in said
+
+
+@pytest.mark.parametrize("call,message", [
+    (lambda top: top.run(velocity=[0, 0, 1], until=1, step=0.01), "`run` has no `step`: a step is given before, as `term.stepper(0.01).run(…)`"),
+    (lambda top: top.run(velocity=[0, 0, 1], until=1, accuracy=1e-8), "a run to an accuracy is `term.for_accuracy(1e-8, …)`"),
+    (lambda top: top.stepper(0.01).run(velocity=[0, 0, 1], duration=1), "`run` has no `duration`: the end is `until=10`, s"),
+    (lambda top: top.stepper(0.01).run(velocty=[0, 0, 1], until=1), "`run` has no `velocty`; did you mean `velocity`?"),
+    (lambda top: top.stepper(0.01, method="Suzuki 4"), "`stepper` has no `method`: a method has its kind"),
+    (lambda top: top.stepper(0.01).run([0, 0, 1]), "`run` takes velocity, momentum, attitude"),
+    (lambda top: ls.euler(0, 0.8, foo=1), "`euler` has no `foo`: it has precession, nutation, spin, degrees"),
+])
+def test_a_call_with_other_arguments_says_what_to_write(call, message):
+    with pytest.raises(ls.CallError) as found:
+        call(heavy_top())
+    assert message in str(found.value) and isinstance(found.value, TypeError)
+
+
+@pytest.mark.parametrize("l,place", [
+    ("1/2 * Omega.dot((J * Omega)", (1, 16)), ("1/2 * Omega.dot(J * Omega))", (1, 27)), ("1/2\n * Omega.dot(J * Omega]", (2, 23)),
+])
+def test_a_bracket_without_another_has_its_place(l, place):  # noqa: E741
+    with pytest.raises(ls.DeclarationError) as found:
+        declared(l)
+    assert (found.value.line, found.value.column) == place and "bracket" in str(found.value)
+
+
+def test_a_vector_in_the_place_of_a_matrix_is_said_to_be_a_diagonal():
+    with pytest.raises(ls.DeclarationError, match=r"pass `A=np.diag\(\[1, 2, 5\]\)`"):
+        ls.lagrangian("SO3", l="1/2 * Omega.dot(A * Omega)", discretise="trapezoid(Cayley)", A=[1, 2, 5])

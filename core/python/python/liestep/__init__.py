@@ -9,7 +9,7 @@
 True
 """
 
-from . import errors
+from . import _calls, errors
 from ._control import Control, Plan
 from ._declared import contravariant, covariant, mixed, point
 from ._ensemble import Ensemble, Many, Spread, normal, rotation, uniform
@@ -27,13 +27,15 @@ from ._state import State
 from ._stepper import Stepper, euler, schemes, translation
 from ._term import Term, force, hamiltonian, lagrangian, nonholonomic
 from ._torch import torch
-from .errors import ColumnError, DeclarationError, Error, SceneError, SetupError, StepError, StoreError
+from .errors import CallError, ColumnError, DeclarationError, Error, SceneError, SetupError, StepError, StoreError
 
 __version__ = "0.1.0"
 __all__ = [
-    "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Fit", "Gradient", "Happenings", "Many", "Moment", "Orbit", "Plan", "Run",
+    "CallError", "ColumnError", "Columns", "Control", "DeclarationError", "Ensemble", "Error", "Fit", "Gradient", "Happenings", "Many", "Moment", "Orbit", "Plan", "Run",
     "Scene", "SceneError", "SceneRun",
     "SetupError", "Signal", "Spread", "State", "StepError", "Stepper", "StoreError", "Term", "air_drag", "body", "contravariant", "covariant",
     "dipole", "drag", "errors", "euler", "force", "gravity", "gravity_gradient", "hamiltonian", "jax", "lagrangian", "magnetic_damping", "mixed",
     "nonholonomic", "nonstandard", "normal", "orbit", "point", "rotation", "rotor", "scene", "schemes", "signal", "spring", "thrust", "torch", "torque", "translation", "uniform",
 ]
+
+_calls.advise(globals(), __all__)

@@ -129,6 +129,10 @@ class Motion(Columns):
         return self.group("momentum_")
 
 
+def _labelled(name: str, unit: str) -> str:
+    return f"{name}, {unit}" if unit else name
+
+
 def rotations(quaternions: Array) -> Array:
     """The matrices of unit quaternions ``w, x, y, z``, a row for each."""
     import numpy as np
@@ -272,13 +276,16 @@ class Run(Motion, Differentiable):
             except ImportError as error:
                 raise Error("a plot takes matplotlib, which isn't installed: `pip install matplotlib`, or write `run.svg()`") from error
             _, axes = plt.subplots(2, 1, sharex=True, constrained_layout=True)
-        axes[0].plot(self.time, self.velocity, label=[name for name in self._names if name.startswith("velocity_")])
-        axes[0].set(ylabel="velocity", title=self.title)
+        names = [name for name in self._names if name.startswith("velocity_")]
+        axes[0].plot(self.time, self.velocity, label=names)
+        # Components of several units, as those of SE(3), have none in common.
+        units = {self.units[name] for name in names}
+        axes[0].set(ylabel=_labelled("velocity", units.pop() if len(units) == 1 else ""), title=self.title)
         axes[0].legend(loc="upper right")
         off, rounding = abs(self.energy - self.energy[0]), 2.0**-52 * abs(self.energy[0])
         # Where nothing is off by more than rounding that is what is shown; else zeros would stretch the axis.
         axes[1].semilogy(self.time, off.clip(min=rounding) if off.max() < 64 * rounding else np.where(off > rounding, off, np.nan))
-        axes[1].set(xlabel="time, s", ylabel="energy from its start")
+        axes[1].set(xlabel="time, s", ylabel=_labelled("energy from its start", self.units["energy"]))
         return axes[0].figure
 
     def html(self, path: str | Path | None = None) -> str:

@@ -63,6 +63,10 @@ class SetupError(Error, ValueError):
     """Numbers or a method with which there is no motion."""
 
 
+class CallError(Error, TypeError):
+    """A call with arguments that the function doesn't have."""
+
+
 class StepError(Error, ArithmeticError):
     """A step that has no solution; what was recorded before is the attribute `run`."""
 
