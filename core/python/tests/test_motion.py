@@ -103,6 +103,16 @@ def test_a_force_takes_energy_and_a_sum_of_forces_more():
     assert abs(run.momentum[-1, 2] - 2.5 * np.exp(-0.1 * 5 / 2.5)) < 1e-6
 
 
+def test_events_of_a_run_to_an_accuracy_are_not_lost_in_long_steps():
+    # The exact motion takes one step of 10 s, in which this velocity passes zero twice.
+    body, start = ls.body([1, 2, 2.5]), {"velocity": [0.1, 2, 0.2], "until": 10}
+    run = body.run(**start, events={"turn": "velocity_x = 0"})
+    assert run.events["turn"].times == pytest.approx([0.53733015, 8.30160865], abs=1e-7)
+    assert len(run) == 1001 and run.time[-1] == 10 and run.error < 1e-6
+    stopped = body.run(**start, events={"turn": "velocity_x = 0, stop"})
+    assert stopped.ended_by == "turn" and stopped.time[-1] <= 0.54
+
+
 def test_events_are_found_between_steps(top):
     run = top.stepper(0.01).run(**START, until=20, events={"low": "tilt > 40 deg", "turn": "velocity_x = 0"})
     assert len(run.events["low"]) > 3 and len(run.events["turn"]) > 10

@@ -428,6 +428,12 @@ class _Search(Stepper):
             return self._by_own_steps(start, course, names)
         made = scene.ask(self.tolerance, start, course)
         kind, name = made["method"]
+        count = round(course.until / made["step"])
+        if course.events and made["failure"] is None and 0 < count < ROWS - 1:
+            # Two crossings within one step aren't found: no step is longer than from row to row.
+            shorter = Stepper(self.term, course.until / (count * ceil((ROWS - 1) / count)), **_method(kind, name))
+            again = self.term._scene().run(shorter.step, shorter.method, start, course)
+            made = {**made, **again, "step": shorter.step}
         about = f"steps of {made['step']:.4g} s{_by(kind, name)}"
         run = _finished(self.term, made["step"], made, names, about)
         run.method = _method(kind, name)
