@@ -41,7 +41,7 @@ enum Kind {
 
 fn kind(method: &MethodRuns) -> Kind {
     let name = method.name.as_str();
-    let is_flow = name.starts_with("K6,") && name != "K6, Suzuki 8";
+    let is_flow = name.starts_with("K6,") && name != "K6, Suzuki 6 to 8";
     match name {
         _ if method.family == Family::Rival => Kind::Rival,
         _ if name.starts_with("Gauss") => Kind::Collocation,

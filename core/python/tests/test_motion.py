@@ -109,6 +109,10 @@ def test_events_of_a_run_to_an_accuracy_are_not_lost_in_long_steps():
     run = body.run(**start, events={"turn": "velocity_x = 0"})
     assert run.events["turn"].times == pytest.approx([0.53733015, 8.30160865], abs=1e-7)
     assert len(run) == 1001 and run.time[-1] == 10 and run.error < 1e-6
+    forced = body + ls.torque([1e-9, 0, 0])
+    assert forced.run(**start, events={"turn": "velocity_x = 0"}).events["turn"].times == pytest.approx([0.53733015, 8.30160865], abs=1e-6)
+    with pytest.raises(ls.SetupError, match=r"`term.stepper\(-0.01\).run\(until=-3, …\)`"):
+        body.run(velocity=[0.1, 2, 0.2], until=-3)
     stopped = body.run(**start, events={"turn": "velocity_x = 0, stop"})
     assert stopped.ended_by == "turn" and stopped.time[-1] <= 0.54
 

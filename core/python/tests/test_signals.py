@@ -29,6 +29,18 @@ def turning(t: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("substeps", [1, 4])
 @pytest.mark.parametrize("step", [0.4, 0.25, 0.5, 0.05])
+def test_rows_between_steps_up_to_the_end_of_a_signal():
+    # The last rows stand where half a step ahead has no value.
+    times = np.linspace(0, 4, 17)
+    torque = ls.signal(times, np.stack([np.sin(3 * times), np.cos(times), 0.3 + 0 * times], 1), between="lines")
+    body = ls.body([2, 2.6, 4.1]) + ls.torque(torque)
+    run = body.run(velocity=[0.4, -1.1, 0.8], until=4)
+    every = body.stepper(0.001).run(velocity=[0.4, -1.1, 0.8], until=4)
+    assert len(run) == 1001 and run.time[-1] == 4 and abs(run.velocity - every.velocity[::4]).max() < 1e-5
+    rows = body.stepper(0.25, composition="Suzuki 4").run(times=[3.9, 4], until=4, velocity=[0.4, -1.1, 0.8])
+    assert abs(rows.velocity[-1] - every.velocity[-1]).max() < 1e-3
+
+
 def test_an_impulse_is_exact_where_corners_lie_between_steps(step, substeps):
     run = pushed().stepper(step, substeps=substeps).run(velocity=[0, 0, 1], until=4)
     assert run.momentum[-1] == pytest.approx([0, 0, 4 + 2 * 1.5], abs=1e-13)

@@ -303,6 +303,21 @@ fn events() {
     assert_eq!(table_of(&folder.join("stop.csv")).last().unwrap()[0].to_bits(), (0.07 * 27.0_f64).to_bits());
 }
 
+/// A free body to an accuracy takes one step by the exact motion, in which this velocity passes zero twice.
+#[test]
+fn events_within_one_long_step() {
+    let folder = folder("events-within-one-long-step");
+    let text = "title = \"flip\"\nbody.moments = [1, 2, 2.5]\nstart.velocity = [0.1, 2, 0.2]\nrun.duration = 10\n\
+                run.accuracy = 1e-6\n[[event]]\nname = \"turn\"\nvelocity_x = 0\n";
+    fs::write(folder.join("flip.toml"), text).unwrap();
+    printed(&folder, &["run", "flip.toml", "--csv", "--out", "."]);
+    let table = fs::read_to_string(folder.join("flip.events.csv")).unwrap();
+    let times: Vec<f64> = table.lines().skip(1).map(|row| row.split(',').nth(2).unwrap().parse().unwrap()).collect();
+    // By SciPy's DOP853 at 1e-12.
+    let expected = [0.537_330_15, 8.301_608_65];
+    assert!(times.len() == 2 && times.iter().zip(expected).all(|(one, other)| (one - other).abs() < 1e-7), "{times:?}");
+}
+
 /// A sweep counts events.
 #[test]
 fn events_of_a_sweep() {

@@ -303,6 +303,26 @@ impl<B: Backend<f64>> Varied<B> {
         Ok(())
     }
 
+    /// Gives a room's state the memory of a new start, for the step ahead of this time. Where no values lie ahead, as at the
+    /// end of a signal, those of the time serve. What is advected is left as it is.
+    fn look_ahead(&self, room: &mut Room<B>, time: f64) -> Result<(), StepError> {
+        let sizes = &self.whole.codes.sizes;
+        let advected = room.state[sizes.advected()..sizes.history()].to_vec();
+        let ahead = self.forget(room, [time, self.whole.h]);
+        if let (Err(error), Some(course)) = (ahead, &self.course) {
+            let Room { stages, state, numbers, .. } = &mut *room;
+            course.at(time, numbers);
+            if !are_finite(numbers) {
+                return Err(error);
+            }
+            let [_, share] = self.stages[0];
+            stages[0].take(numbers, self.whole.h * share).map_err(|_| GIVEN)?;
+            stages[0].forget(state);
+        }
+        room.state[sizes.advected()..sizes.history()].copy_from_slice(&advected);
+        Ok(())
+    }
+
     /// Makes the step in equal parts, if the method says so; otherwise the error, for the whole step.
     #[cold]
     #[inline(never)]
@@ -326,7 +346,7 @@ impl<B: Backend<f64>> Varied<B> {
             if let Ok(iterations) = each.sum::<Result<u32, StepError>>() {
                 room.state[last] = state[state.len() - 1] + 1.0;
                 // The increment of a part doesn't predict that of a whole step.
-                self.forget(room, [start + length, self.whole.h])?;
+                self.look_ahead(room, start + length)?;
                 return Ok(StepReport { iterations, remedy: Some(Remedy::Substeps(parts)) });
             }
             let Some(more) = parts.checked_mul(2) else { break };
@@ -423,7 +443,7 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
         let last = room.state.len() - 1;
         room.state[last] = state[state.len() - 1];
         let mut part = memory.within(&room.state);
-        self.forget(&mut room, [start + length, self.whole.h])?;
+        self.look_ahead(&mut room, start + length)?;
         let sizes = &self.whole.codes.sizes;
         part[sizes.history()..last].copy_from_slice(&room.state[sizes.history()..last]);
         Ok(part)

@@ -219,6 +219,9 @@ fn values_that_are_none_are_errors() {
     let error = StepError::NonFinite { what: "value given to the step" };
     assert_eq!(driven.run(&mut state, 20), Err(error.clone()));
     driven.run(&mut state, 9).expect("steps");
+    // The memory of the step ahead has no values there.
+    let (part, before) = (driven.part(&state, 0.6).expect("a part"), state.clone());
+    assert!((driven.time(&part) - 0.096).abs() < 1e-15 && state == before);
     driven.step(&mut state).expect("the last step");
     let before = state.clone();
     assert_eq!((driven.step(&mut state), state), (Err(error), before));

@@ -79,6 +79,10 @@ def _advised(call: str, function: Callable[..., Any]) -> Callable[..., Any]:
     return calling
 
 
+#: Classes of loops with a million calls a second, to which another call would add a quarter.
+IN_LOOPS = ("State", "Moment")
+
+
 def advise(module: dict[str, Any], names: list[str]) -> None:
     """Lets the functions and methods of these names say what to write where a call has arguments that they don't have."""
     done: set[type] = set()
@@ -88,7 +92,7 @@ def advise(module: dict[str, Any], names: list[str]) -> None:
             module[name] = _advised(name, one)
             # It pickles by its place.
             setattr(inspect.getmodule(one), name, module[name])
-        elif inspect.isclass(one) and not issubclass(one, Exception):
+        elif inspect.isclass(one) and not issubclass(one, Exception) and name not in IN_LOOPS:
             for owner in one.__mro__:
                 if owner.__module__.startswith(__package__ or "liestep") and owner not in done:
                     done.add(owner)

@@ -246,8 +246,10 @@ class Stepper:
         times : array_like, optional
             The times of the rows instead, s, between the steps too; without `until` the last of them is the end.
         events : mapping, optional
-            Names, and what is looked for: ``"tilt > 60 deg"``, ``"velocity_x = 0"``; with ``", stop"`` it ends the run. Or a
-            function of a `liestep.Moment` that passes zero there; its attributes ``direction`` and ``terminal`` are SciPy's.
+            Names, and what is looked for: ``"tilt > 60 deg"``, ``"velocity_x = 0"``; with ``", stop"`` it ends the run after
+            the step in which it happens. Or a function of a `liestep.Moment` that passes zero there; its attributes
+            ``direction`` and ``terminal`` are SciPy's. Of two crossings within one step neither is found; a run to an
+            accuracy with events makes a thousand steps at least.
 
         Returns
         -------
@@ -418,6 +420,8 @@ class _Search(Stepper):
         import numpy as np
 
         course = _course(until, 1 if every is None else every, times, events, None)
+        if course.until < 0:
+            raise SetupError("a run back has a step that is given, below zero, as `term.stepper(-0.01).run(until=-3, …)`")
         if every is None and times is None and isfinite(course.until):
             course.every, course.times = 0, np.linspace(0.0, course.until, ROWS).tolist()
         return course
@@ -429,9 +433,8 @@ class _Search(Stepper):
         made = scene.ask(self.tolerance, start, course)
         kind, name = made["method"]
         count = round(course.until / made["step"])
-        if course.events and made["failure"] is None and 0 < count < ROWS - 1:
-            # Two crossings within one step aren't found: no step is longer than from row to row.
-            shorter = Stepper(self.term, course.until / (count * ceil((ROWS - 1) / count)), **_method(kind, name))
+        if made["failure"] is None and (more := _enough(count, course)) > count:
+            shorter = Stepper(self.term, course.until / more, **_method(kind, name))
             again = self.term._scene().run(shorter.step, shorter.method, start, course)
             made = {**made, **again, "step": shorter.step}
         about = f"steps of {made['step']:.4g} s{_by(kind, name)}"
@@ -452,6 +455,8 @@ class _Search(Stepper):
             except StepError:
                 error = inf
             if error < self.tolerance:
+                if (more := _enough(count, course)) > count:
+                    stepper = Stepper(self.term, until / more)
                 run = stepper._made(start, course, names)
                 run._error, run._estimate, run.method = error, None, {}
                 return run
@@ -459,6 +464,11 @@ class _Search(Stepper):
             count *= min(8, max(2, int((2 * error / self.tolerance) ** 0.5))) if error < SURE else 2
         found = f"the step of {self.term.name} doesn't come to {self.tolerance:g} in {MOST} steps"
         raise SetupError(f"{found}: take a larger tolerance, or a step, `stepper(h)`")
+
+
+def _enough(count: int, course: _Course) -> int:
+    """A multiple of a number of steps, so that events aren't lost: of two crossings within one step neither is found."""
+    return count * ceil((ROWS - 1) / count) if course.events and 0 < count < ROWS - 1 else count
 
 
 def accurate(term: Sum, tolerance: float, **run: Any) -> Run:

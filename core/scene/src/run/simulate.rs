@@ -24,7 +24,8 @@ pub(crate) struct Begun {
 /// The function that makes the samples of a run.
 pub(crate) type Sampler = Arc<dyn Fn(&Moment<'_, AnyStepper>) -> Sample + Send + Sync>;
 
-/// Fewest steps of a run whose number of steps is left open. With fewer, curves would look like polygons.
+/// Fewest steps of a run whose number of steps is left open, or that looks for events. With fewer, curves would look like
+/// polygons, and of two events within a step neither is found.
 const FEWEST: u32 = 1000;
 
 impl SceneFile {
@@ -37,7 +38,8 @@ impl SceneFile {
                 let choice = self.searched(Accuracy { tolerance, horizon })?;
                 let mut chosen = self.clone();
                 chosen.run.method = choice.chosen().scheme;
-                let steps = if self.run.is_left_open && choice.steps < u64::from(FEWEST) {
+                let is_fine = self.run.is_left_open || !self.event_names().is_empty();
+                let steps = if is_fine && choice.steps < u64::from(FEWEST) {
                     (horizon / f64::from(FEWEST), u64::from(FEWEST))
                 } else {
                     (choice.chosen().step, choice.steps)

@@ -50,12 +50,12 @@ impl CompositionScheme {
             0.050665090759924496335874344156866, 0.049674370639729879054568800279461,
             0.049317735759594537917680008339338]);
 
-        /// Order 6 in five stages of a method of order 4. \[Su90\]
-        SUZUKI_6 = Self::new("Suzuki 6", 4, 6, &[0.37306582773327282478, 0.37306582773327282478,
+        /// Order 6 in five stages of a method of order 4; of a step of order 2 it is of order 2. \[Su90\]
+        SUZUKI_6 = Self::new("Suzuki 4 to 6", 4, 6, &[0.37306582773327282478, 0.37306582773327282478,
             -0.49226331093309129910]);
 
-        /// Order 8 in five stages of a method of order 6. \[Su90\]
-        SUZUKI_8 = Self::new("Suzuki 8", 6, 8, &[0.35958464934999225261, 0.35958464934999225261,
+        /// Order 8 in five stages of a method of order 6; of a step of order 2 it is of order 2. \[Su90\]
+        SUZUKI_8 = Self::new("Suzuki 6 to 8", 6, 8, &[0.35958464934999225261, 0.35958464934999225261,
             -0.43833859739996901045]);
     }
 
