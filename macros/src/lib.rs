@@ -93,7 +93,8 @@ use liestep_derivation::Role;
 /// The fields are `f64`, `Vector3<f64>`, `Point3<f64>`, `Matrix3<f64>` (or of another size), `NonstandardInertia`,
 /// `DiagonalNonstandardInertia` and `Inertia`, or all of them over `f32` or over a type parameter `T: Real` of the
 /// struct; with more than six rows they are `SVector<f64, 8>` and `SMatrix<f64, 8, 8>`. The derivation uses what their
-/// types guarantee: an inertia is symmetric, a diagonal one has six zeros. A point, if the group moves points, has the
+/// types guarantee: an inertia is symmetric, a diagonal one has six zeros. (3.13) with an `Inertia` is
+/// an error, and so is `½ Ω·JΩ` with a `NonstandardInertia` in a continuous Lagrangian. A point, if the group moves points, has the
 /// homogeneous coordinates `(x, y, z, 1)`, as on SE(3). An advected vector is a covector, moved by `ρ(f)ᵀ`; a point is
 /// moved by `ρ(f)⁻¹`; `ContravariantVector`, `ContravariantTensor`, `CovariantTensor` and `MixedTensor` are the other
 /// kinds. At most six parameters are advected or given, and none is called `F`, `I`, `h`, `hat`, `vee`, `log`, `exp` or

@@ -117,6 +117,7 @@ fn matrices_are_square() {
         "#[lagrangian(group = SO3, l_d = ((F - I) * C * C.transpose() * (F - I).transpose()).trace() / h)]
         struct Body { C: SMatrix<f64, 2, 3> }",
     );
+    assert!(found[0].message.contains("this type has no meaning"), "{found:?}");
     assert!(found.iter().all(|mistake| !mistake.message.contains("please report")), "{found:?}");
 }
 

@@ -153,10 +153,11 @@ pub(crate) fn record(stepper: &AnyStepper, mut state: AnyState, course: &Course)
     let end = stepper.time(&state) + steps as f64 * stepper.step_size();
     let mut observed = Run::new(stepper, &mut state).every(course.every, row).every(look, |_| signals.look());
     if let Some(times) = &course.times {
-        let is_behind = |time: f64| (time - end) * stepper.step_size().signum() > 8.0 * f64::EPSILON * end.abs();
-        let times = times.iter().map(move |&time| {
-            if !is_varied && is_behind(time) && (time - end).abs() <= ROUNDING * end.abs() { end } else { time }
-        });
+        let forwards = stepper.step_size().signum();
+        // Up to here a time is that of the end but for its rounding.
+        let last = end + forwards * 2.0 * f64::EPSILON * end.abs();
+        let is_last = move |time: f64| (time - last) * forwards > 0.0 && (time - end).abs() <= ROUNDING * end.abs();
+        let times = times.iter().map(move |&time| if !is_varied && is_last(time) { last } else { time });
         observed = observed.at(times, row);
     }
     for (watch, table) in course.events.iter().zip(&tables) {

@@ -12,10 +12,14 @@ import random
 import sys
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[1] / "python" / "liestep"))
-
-from verify.claims import CLAIMS, Step, Unlucky, decided  # noqa: E402
-from verify.field import drawn, functions  # noqa: E402
+try:
+    from liestep.verify.claims import CLAIMS, Step, Unlucky, decided
+    from liestep.verify.field import drawn, functions
+except ImportError:
+    # Without the wheel: the checker needs the standard library alone.
+    sys.path.append(str(Path(__file__).resolve().parents[1] / "python" / "liestep"))
+    from verify.claims import CLAIMS, Step, Unlucky, decided
+    from verify.field import drawn, functions
 
 OTHER = {"+": "-", "-": "+", "*": "+", "/": "*"}
 

@@ -69,7 +69,7 @@ where
 
     #[hot]
     fn blocks(joined: &SMatrix<T, C, C>) -> [[SMatrix<T, A, A>; 2]; 2] {
-        const { assert!(A == B, "the bodies are equal") }
+        const { assert!(A == B, "blocks are those of two bodies of equal size") }
         let block = |row: usize, column: usize| joined.fixed_view::<A, A>(row, column).into_owned();
         [[block(0, 0), block(0, A)], [block(A, 0), block(A, A)]]
     }

@@ -238,7 +238,8 @@ impl<'a, I: Integrator> Run<'a, I> {
         }
         ended.steps = I::steps(self.state) - start;
         if matches!(ended.reason, Reason::Done) {
-            self.show_timed(None, reported(integrator.time(self.state)) * (1.0 + ROUNDED), &mut ended)?;
+            let (end, h) = (reported(integrator.time(self.state)), reported(integrator.step_size()));
+            self.show_timed(None, end + end.abs() * ROUNDED * h.signum(), &mut ended)?;
         }
         Ok(ended)
     }
@@ -362,8 +363,8 @@ where
     I::Scalar: Into<f64>,
 {
     /// Observes the motion at these times, s, also between the steps: as [`Integrator::part`] of one. A time that is
-    /// the end of a step, to the bit, has the state after that step; so has one after the last step by no more than the
-    /// rounding of the run's end.
+    /// the end of a step, to the bit, has the state after that step; with equal steps so has one after the last step by no
+    /// more than the rounding of the run's end.
     ///
     /// The times are in the order of the motion, and none lies before it; later ones than the end of the run are ignored.
     pub fn at<R: Answer>(

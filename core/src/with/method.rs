@@ -442,7 +442,7 @@ impl<S: Scene<Scalar = f64, Group = Self>> Steppable<S> for SO3 {
         }
         let has_gradient = has_force_gradient(scene);
         let splittings = SplittingScheme::ALL.into_iter().filter(|scheme| has_gradient || !scheme.has_gradients());
-        // `SIX_B` has the kernel of `SIX_A`; with one method more, the trials of some short runs cost over sixty runs.
+        // `SIX_B` has the kernel of `SIX_A`; as each further method costs trials, it is the one that is left out.
         let is_tried = |scheme: &ProcessedScheme| has_gradient && *scheme != ProcessedScheme::SIX_B;
         let processed = ProcessedScheme::ALL.into_iter().filter(is_tried);
         let splittings = splittings.map(Scheme::Splitting).chain(processed.map(Scheme::Processed));

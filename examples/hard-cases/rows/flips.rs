@@ -105,7 +105,7 @@ pub(crate) fn b7(_: Effort) -> Result<Row, Failure> {
         ("K6, h = 0.01", &alone, 0.01),
         ("exact motion, h = 0.01", &exact_motion, 0.01),
         ("(3.13), Kahan-Li 8, h = 0.02", &kahan_li, 0.02),
-        ("K6, Suzuki 8, h = 0.05", &suzuki, 0.05),
+        ("K6, Suzuki 6 to 8, h = 0.05", &suzuki, 0.05),
         ("exact motion, h = 0.05", &exact_motion, 0.05),
     ];
     for (name, method, h) in high {

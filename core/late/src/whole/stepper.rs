@@ -318,7 +318,7 @@ impl<B: Backend<f64>> Whole<B> {
 
     /// The stepper of these numbers and this method by another step.
     pub(super) fn of_length(&self, h: f64) -> Result<Self, SetupError> {
-        Self::shared(&self.codes, Arc::clone(&self.numbers), h, self.method)
+        self.with(&self.numbers, h)
     }
 
     pub(super) fn room(&self) -> usize {

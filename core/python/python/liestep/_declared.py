@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -135,7 +136,7 @@ def _value(name: str, value: Any) -> Value:
     if name.startswith("J") and array.shape in ((3,), (3, 3)):
         if array.shape == (3,):
             numbers = tuple(np.diag(array).ravel().tolist())
-        return Value("NonstandardInertia" if name.endswith("_d") else "Inertia", numbers)
+        return Value("NonstandardInertia" if re.search(r"_d(_?\d+)?$", name) else "Inertia", numbers)
     match array.shape:
         case ():
             return Value("f64", numbers)

@@ -231,7 +231,7 @@ def _with_diagonal(message: str, own_text: str, numbers: Mapping[str, Value]) ->
     """A message about a vector, with what to write where it was to be the diagonal of a matrix."""
     for name, value in numbers.items():
         if value.kind.startswith("SVector") and "can't be multiplied by a vector" in message and re.search(rf"\b{re.escape(name)} *\* *\w", own_text):
-            given = ", ".join(f"{one:g}" for one in value.numbers[:6])
+            given = ", ".join(f"{one:g}" for one in value.numbers[:6]) + (", …" if len(value.numbers) > 6 else "")
             return f"{message}; if `{name}` is the diagonal of a matrix, pass `{name}=np.diag([{given}])`"
     return message
 

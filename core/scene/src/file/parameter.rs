@@ -59,8 +59,9 @@ fn typed(name: &str, table: &DeTable<'_>, value: &Spanned<DeValue<'_>>) -> Resul
         let source = ValueDeserializer::from(value.clone());
         let inertia = OfInertia::deserialize(source).map_err(|error| in_value(value, &error))?;
         let Some(inertia) = inertia.inertia() else { return wrong(value.span()) };
-        // A name with the suffix `_d` has the nonstandard inertia.
-        let is_nonstandard = name.ends_with("_d");
+        // A name with the suffix `_d`, and a number of a body behind it, has the nonstandard inertia.
+        let unnumbered = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+        let is_nonstandard = name.ends_with("_d") || unnumbered.trim_end_matches('_').ends_with("_d");
         let matrix = if is_nonstandard { *inertia.to_nonstandard().as_matrix() } else { *inertia.as_matrix() };
         let kind = if is_nonstandard { "NonstandardInertia" } else { "Inertia" };
         return Ok((kind.to_owned(), matrix.as_slice().to_vec()));

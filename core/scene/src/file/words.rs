@@ -1,12 +1,13 @@
 //! Messages of the derivation in the words of files: keys in the place of arguments and fields.
 
 /// Words about programs, and what they are about in a file.
-const WORDS: [(&str, &str); 8] = [
+const WORDS: [(&str, &str); 9] = [
     (
         "declare what changes with it by `given(u = field)`, and go on by `step_with`",
         "what changes with it is prescribed by a program, with the library itself",
     ),
     ("the struct has no field", "this table has no key"),
+    ("give it the type `NonstandardInertia` or `Inertia`", "write it as `{ tensor = [[…], […], […]] }`"),
     ("give it the type `NonstandardInertia`", "give it a name that ends in `_d`"),
     ("give it the type `Inertia`", "give it a name that doesn't end in `_d`"),
     (" of the struct", " of this table"),

@@ -348,12 +348,12 @@ impl FieldKind {
         matches!(self, Self::Advected(..))
     }
 
-    /// Whether a field of this kind can be prescribed for each step.
     /// Whether the type promises a symmetric and positive matrix.
     pub fn is_inertia(self) -> bool {
         matches!(self, Self::SymmetricInertia | Self::StandardInertia | Self::DiagonalInertia)
     }
 
+    /// Whether a field of this kind can be prescribed for each step.
     pub fn can_be_given(self) -> bool {
         matches!(self, Self::Scalar | Self::Vector(_) | Self::Matrix(_))
     }

@@ -6,7 +6,8 @@
 //! them, and knows no group.
 //!
 //! Operations have the order of the library's own groups and solves, so that a step has the bits of the compiled one. From
-//! five rows on, pivots of an inverse are taken on the diagonal, where those of the library are in steps of half a radian.
+//! five rows on, pivots of an inverse are taken on the diagonal, as the library's are in steps of up to half a radian; in longer ones
+//! roundings differ.
 //!
 //! Deliberately not here: any decision of a run, such as how often to iterate.
 //!

@@ -285,7 +285,7 @@ impl<'a> Motion<'a> {
         let is_used = |name: Name| self.names.get(&name).is_some_and(|&id| self.derived.hessian.contains(id));
         let samples: Vec<Value> = samples.map(|(hessian, _)| hessian).collect();
         let (exact, point) = self.hessian_at_rest(Residue::stream(1));
-        classified(self.declaration, &is_used, samples, (&exact, &point))
+        classified(self.declaration, (&is_used, FieldKind::is_inertia), samples, (&exact, &point))
     }
 
     /// The second derivative at rest, and the values at which it is taken.

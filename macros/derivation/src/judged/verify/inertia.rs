@@ -55,21 +55,16 @@ pub fn kinetic_part(of: Subject) -> KineticPart {
     let inertias = samples.iter().map(|sample| at_identity(sample, &graph, &inertia));
     let inertias = inertias.map(|entries| Value { rows: dimension, columns: dimension, entries });
     let is_used = |name: Name| lowered.names.get(&name).is_some_and(|&id| derived.limit.inertia.contains(id));
-    let found = classified(declaration, &is_used, inertias.collect(), (&exact, &sample.values));
-    // A discrete Lagrangian may name any symmetric matrix `J_d`.
-    let is_named_so =
-        |field: usize| declaration.fields.get(field).is_some_and(|one| one.kind != FieldKind::StandardInertia);
-    match found {
-        KineticPart::OtherInertia(field) if is_named_so(field) => KineticPart::Regular,
-        other => other,
-    }
+    // A discrete Lagrangian may call any symmetric matrix `J_d`.
+    let can_be_wrong = |kind: FieldKind| kind == FieldKind::StandardInertia;
+    classified(declaration, (&is_used, can_be_wrong), inertias.collect(), (&exact, &sample.values))
 }
 
 /// The kinetic part by its second derivative in the field, and by its sign at sample values. `is_used` selects the
-/// names that it depends on.
+/// names that it depends on, `can_be_wrong` the types of inertias that are compared with that of a rotation.
 pub(super) fn classified(
     declaration: &Declaration,
-    is_used: &dyn Fn(Name) -> bool,
+    (is_used, can_be_wrong): (&dyn Fn(Name) -> bool, fn(FieldKind) -> bool),
     samples: Vec<Value>,
     (exact, values): (&Value<Residue>, &Values<Residue>),
 ) -> KineticPart {
@@ -79,7 +74,7 @@ pub(super) fn classified(
         KineticPart::NotSmooth
     } else if has_a_sign(declaration, is_used) && samples.iter().all(|j| is_positive(&j.map(|x| -x))) {
         KineticPart::Negative
-    } else if let Some(field) = other_inertia(declaration, exact, values) {
+    } else if let Some(field) = other_inertia(declaration, can_be_wrong, (exact, values)) {
         KineticPart::OtherInertia(field)
     } else if linear::is_regular(&exact.entries, exact.rows) {
         KineticPart::Regular
@@ -90,8 +85,13 @@ pub(super) fn classified(
 }
 
 /// The field whose type has the other inertia than that of a rotation: the kinetic energy of a `NonstandardInertia` `J_d` is
-/// `½ Ω·(tr(J_d) I − J_d) Ω`, that of an `Inertia` `J` is `½ Ω·J Ω`.
-fn other_inertia(declaration: &Declaration, exact: &Value<Residue>, values: &Values<Residue>) -> Option<usize> {
+/// `½ Ω·(tr(J_d) I − J_d) Ω`, that of an `Inertia` `J` is `½ Ω·J Ω`. Other multiples of these, and groups of the user's own, are
+/// not compared.
+fn other_inertia(
+    declaration: &Declaration,
+    can_be_wrong: fn(FieldKind) -> bool,
+    (exact, values): (&Value<Residue>, &Values<Residue>),
+) -> Option<usize> {
     let mut first = 0;
     for factor in declaration.group.factors() {
         let start = first;
@@ -101,7 +101,7 @@ fn other_inertia(declaration: &Declaration, exact: &Value<Residue>, values: &Val
         }
         let block = Value::new(3, 3, |i, j| exact.at(start + i, start + j));
         let is_other = |(at, field): (usize, &Field)| {
-            let value = values.get(&Name::Field(at)).filter(|_| field.kind.is_inertia())?;
+            let value = values.get(&Name::Field(at)).filter(|_| can_be_wrong(field.kind))?;
             let trace = (0..3).map(|k| value.at(k, k)).fold(Residue::ZERO, |sum, entry| sum + entry);
             let spread = Value::diagonal(3, |_| trace).zip(value, |x, y| x - y);
             let other = if field.kind == FieldKind::StandardInertia { &spread } else { value };

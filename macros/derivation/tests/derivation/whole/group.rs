@@ -1,4 +1,4 @@
-//! Increments, inverses, coadjoint actions and the nine actions on parameters for any group, and the form that its
+//! Increments, inverses, coadjoint actions and the actions on parameters for any group, and the form that its
 //! generators imply.
 
 use std::slice::from_ref;
