@@ -28,6 +28,9 @@ pub enum KineticPart {
     OtherInertia(usize),
 }
 
+/// Whether an inertia of this type is compared with that of a rotation.
+type Inertias = fn(FieldKind) -> bool;
+
 /// The kinetic part by its first and second derivatives at several values of the parameters.
 pub fn kinetic_part(of: Subject) -> KineticPart {
     let Subject { declaration, lowered, derived, .. } = of;
@@ -64,7 +67,7 @@ pub fn kinetic_part(of: Subject) -> KineticPart {
 /// names that it depends on, `can_be_wrong` the types of inertias that are compared with that of a rotation.
 pub(super) fn classified(
     declaration: &Declaration,
-    (is_used, can_be_wrong): (&dyn Fn(Name) -> bool, fn(FieldKind) -> bool),
+    (is_used, can_be_wrong): (&dyn Fn(Name) -> bool, Inertias),
     samples: Vec<Value>,
     (exact, values): (&Value<Residue>, &Values<Residue>),
 ) -> KineticPart {
@@ -89,7 +92,7 @@ pub(super) fn classified(
 /// not compared.
 fn other_inertia(
     declaration: &Declaration,
-    can_be_wrong: fn(FieldKind) -> bool,
+    can_be_wrong: Inertias,
     (exact, values): (&Value<Residue>, &Values<Residue>),
 ) -> Option<usize> {
     let mut first = 0;
