@@ -1,5 +1,6 @@
 //! Steps as text in other languages: compiled C makes the library's steps, and Rust is formatted as by rustfmt.
 
+mod compensated;
 mod door;
 mod doors;
 mod groups;
