@@ -82,7 +82,9 @@ where
 #[test]
 fn a_top() {
     if is_there("cc") {
-        assert_bits(&top(), SO3::exp(Vector3::new(0.3, -0.5, 0.2)), &[0.7, -1.1, 4.0]);
+        for up in [Vector3::z(), Vector3::new(0.48, -0.6, 0.64)] {
+            assert_bits(&FullTop { up, ..top() }, SO3::exp(Vector3::new(0.3, -0.5, 0.2)), &[0.7, -1.1, 4.0]);
+        }
     }
 }
 
