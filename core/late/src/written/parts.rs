@@ -1,7 +1,7 @@
 //! The parts of a whole step that every language writes.
 
 use liestep::__private::{log_ratio_series, stumpff_series};
-use liestep_derivation::whole::{MatrixFactor, Programs, WholeStep};
+use liestep_derivation::whole::{Form, MatrixFactor, Programs, WholeStep};
 use liestep_derivation::{Function, Program};
 
 use super::language::own_functions;
@@ -85,6 +85,7 @@ impl<'a> Parts<'a> {
             ("DETS", sizes.dets),
             ("NEAR", sizes.near),
             ("ATTITUDES", sizes.attitudes),
+            ("ROTATIONS", factors.iter().filter(|factor| factor.form == Form::Rotation).count()),
             ("RESTORED", self.outputs("restored")),
             ("IS_WHOLE", usize::from(factors.len() == 1)),
             ("VARIES", usize::from(programs.safe.is_some())),

@@ -88,7 +88,7 @@ COMPENSATED     int has_moved = 0;
     in.attitude = state->attitude;
     $restored(&in, found);
     for (int k = 0; k < @ATTITUDES; one += 1 + $sizes[k++]) {
-PLAIN         if (!(one[0] > (@ATTITUDES > 1 ? 0.0 : 2048.0 * @EPSILON))) continue;
+PLAIN         if (!(one[0] > (@ROTATIONS > 1 ? 0.0 : 2048.0 * @EPSILON))) continue;
 COMPENSATED         if (!(one[0] > 2048.0 * @EPSILON)) continue;
 COMPENSATED         for (int i = 0; i < $sizes[k]; i++) {
 COMPENSATED             const double before = state->attitude[$places[k] + i], after = one[1 + i];
@@ -176,7 +176,7 @@ COMPENSATED     $sum(state->advected, state->errors + @ENTRIES + @N, changes + @
     return 1 + is_far;
 }
 
-FUNCTION int $is_due(const $state *state) { return state->steps % (@ATTITUDES > 1 ? 64 : 1024) == 0; }
+FUNCTION int $is_due(const $state *state) { return state->steps % (@ROTATIONS > 1 ? 64 : 1024) == 0; }
 
 EXPORTED int $step(const $stepper *stepper, $state *state) {
     const int made = $increment(stepper, state);
