@@ -125,6 +125,14 @@ fn derive() -> Command {
         .arg(flag("c", "A step as C99 without dependencies"))
         .arg(flag("header", "The declarations of that step, for other units"))
         .arg(flag("gpu", "A step of many members as one text in OpenCL C, CUDA and C99"))
+        .arg(
+            flag(
+                "compensated",
+                "With --c, --header or --gpu: what rounding takes from a sum is added to its next change",
+            )
+            .requires("form")
+            .conflicts_with_all(["latex", "rust", "js", "certificate"]),
+        )
         .arg(flag("js", "A step in JavaScript"))
         .arg(flag("certificate", "The step as data with its claims, for `python -m liestep.verify`"))
         .group(

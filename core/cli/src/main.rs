@@ -27,7 +27,7 @@ use liestep::recording::{Column, Csv, Sink, SinkError};
 use liestep_arrow::ArrowStream;
 use liestep_derivation::suggestion;
 use liestep_plot::output::Output;
-use liestep_scene::{Form, Import, Mistake, Run, Scene, visible};
+use liestep_scene::{Form, Import, Mistake, Run, Scene, Sums, visible};
 
 use failure::Failure;
 use files::{different_files, files, folder, name};
@@ -179,22 +179,25 @@ fn checked(path: &Path) -> Result<String, Failure> {
 }
 
 /// The forms of a derivation, by their flags.
-const FORMS: [(&str, Form); 7] = [
-    ("latex", Form::Latex),
-    ("rust", Form::Rust),
-    ("c", Form::C),
-    ("header", Form::Header),
-    ("gpu", Form::Gpu),
-    ("js", Form::JavaScript),
-    ("certificate", Form::Certificate),
-];
+const fn forms(sums: Sums) -> [(&'static str, Form); 7] {
+    [
+        ("latex", Form::Latex),
+        ("rust", Form::Rust),
+        ("c", Form::C(sums)),
+        ("header", Form::Header(sums)),
+        ("gpu", Form::Gpu(sums)),
+        ("js", Form::JavaScript),
+        ("certificate", Form::Certificate),
+    ]
+}
 
 fn derive(given: &ArgMatches) -> Result<(), Failure> {
     let Some(name) = given.get_one::<String>("NAME") else {
         let names: Vec<_> = liestep_scene::derived().collect();
         return print(&(names.join("\n") + "\n"));
     };
-    let form = FORMS.into_iter().find(|(flag, _)| given.get_flag(flag)).map(|(_, form)| form);
+    let sums = if given.get_flag("compensated") { Sums::Compensated } else { Sums::Rounded };
+    let form = forms(sums).into_iter().find(|(flag, _)| given.get_flag(flag)).map(|(_, form)| form);
     if let Some(form) = form
         && let Some(written) = liestep_scene::written(name, form)
     {

@@ -42,6 +42,12 @@ pub enum LateError {
     /// The declaration has no step as programs, for this reason.
     #[error(transparent)]
     Step(#[from] StepRefusal),
+    /// The text of a step with compensated sums isn't written beside this.
+    #[error("sums aren't compensated beside {beside}: take a text without compensated sums")]
+    Compensated {
+        /// What the declaration has.
+        beside: &'static str,
+    },
     /// The sum has no declarations.
     #[error("a sum has a declaration at least")]
     Nothing,

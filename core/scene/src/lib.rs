@@ -47,6 +47,6 @@ pub use import::{Import, import};
 pub use run::data::Whole;
 pub use run::make::{EventFunction, Happening, Run, Watch};
 pub use run::simulate::MemberStart;
-pub use show::derivation::{Form, declaration, derivation, derived, written};
+pub use show::derivation::{Form, Sums, declaration, derivation, derived, written};
 pub use show::fmu::{Fmi, Fmu, archive};
 pub use show::recording::Recording;

@@ -6,7 +6,7 @@ use liestep::SO3;
 use liestep::effects::{CayleyBody, RigidBody};
 use liestep::mechanics::Inertia;
 use liestep::prelude::*;
-use liestep_scene::{Form, Sample, Scene};
+use liestep_scene::{Form, Sample, Scene, Sums};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
 /// A scene with this line for the attitude.
@@ -125,7 +125,7 @@ fn names_change_no_bit() {
     let all = [["j", "m", "g", "r"], ["z", "y", "x", "q"], ["p", "b", "m", "a"], ["a", "b", "c", "d"]].map(|names| {
         let scene = Scene::parse("own.toml", &own(names)).unwrap();
         let end = scene.run().unwrap().samples().last().unwrap().clone();
-        let text = scene.written(Form::C).unwrap().unwrap();
+        let text = scene.written(Form::C(Sums::Rounded)).unwrap().unwrap();
         let [a, b, c, d] = names;
         let listed = format!("[9..10]: {b}\n   parameters[10..11]: {b}{d}\n   parameters[11..12]: {c}\n");
         assert!(text.contains(&format!("[0..9]: {a}_d\n   parameters{listed}")), "{text}");

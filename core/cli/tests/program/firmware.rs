@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::called::{TOP, folder, printed, table};
+use crate::called::{PROGRAM, TOP, folder, printed, table};
 
 fn is_there(program: &str) -> bool {
     let found = Command::new(program).arg("--version").output().is_ok();
@@ -66,6 +66,41 @@ int main(void) {{
         let expected: Vec<Vec<f64>> = rows.into_iter().map(|row| row[1..].to_vec()).collect();
         let bits = |rows: &[Vec<f64>]| rows.iter().flatten().map(|one| one.to_bits()).collect::<Vec<_>>();
         assert_eq!((found.len(), bits(&found)), (1001, bits(&expected)), "{name}");
+    }
+}
+
+/// With compensated sums constants are those of `make`, too, and errors are carried; forms without these sums say so.
+#[test]
+fn its_sums_may_be_compensated() {
+    if !is_there("cc") {
+        return;
+    }
+    let folder = folder("firmware-compensated");
+    fs::write(folder.join("scene.toml"), TOP).unwrap();
+    for (name, form) in [("step.c", "--c"), ("step.h", "--header")] {
+        fs::write(folder.join(name), printed(&folder, &["derive", "scene.toml", form, "--compensated"])).unwrap();
+    }
+    let main = format!(
+        "#include \"step.h\"\n#include <stdio.h>\n#include <string.h>
+int main(void) {{
+    static {OF}_state state;
+    {OF}_stepper made;
+    if (!{OF}_make(&made, {OF}_stages[0].parameters, {OF}_stages[0].h)) return 1;
+    if (memcmp(&made, {OF}_stages, sizeof made)) return 2;
+    {OF}_begin(&state);
+    if (state.errors[0] != 0.0) return 3;
+    for (int n = 0; n < 10; n++) if (!{OF}_next(&state)) return 4;
+    puts(state.errors[0] != 0.0 ? \"carried\" : \"lost\");
+    return 0;
+}}
+"
+    );
+    fs::write(folder.join("main.c"), main).unwrap();
+    assert_eq!(run(&folder, &["step.c", "main.c"]), "carried\n");
+    for form in ["--js", "--rust"] {
+        let refused = Command::new(PROGRAM).args(["derive", "gravity", form, "--compensated"]).output().unwrap();
+        let message = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(refused.status.code() == Some(2) && message.contains("--compensated"), "{message}");
     }
 }
 

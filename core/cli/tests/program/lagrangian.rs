@@ -64,6 +64,8 @@ J = { tensor = [[2, 0.1, 0], [0.1, 3, 0], [0, 0, 4]] }
     written("--c", "int NAME_step(const NAME_stepper *stepper, NAME_state *state) {");
     written("--header", "int NAME_step(const NAME_stepper *stepper, NAME_state *state);");
     written("--gpu", "LIESTEP_KERNEL NAME_run(");
+    let text = printed(&folder, &["derive", "principal-body", "--c", "--compensated"]);
+    assert!(text.contains("Sums are compensated") && text.contains("double errors["), "{text}");
     written("--js", "function step(stepper, state) {");
 }
 

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use liestep::__private::TOLERATED;
 use liestep::motion::{Cost, Layout, Propagator, StepReport};
 use liestep::numbers::two_sum;
 use liestep::with::Method;
@@ -12,6 +13,7 @@ use liestep_derivation::whole::WholeStep;
 
 use super::codes::rare;
 use super::constants::StepConstants;
+use super::step::StepCodes;
 use super::stepper::{Whole, WholeError};
 use crate::code::Backend;
 use crate::declaration::{Declaration, Ready, ready_each};
@@ -110,7 +112,9 @@ impl<B: Backend<f64>> Propagator for CompensatedSums<B> {
     fn step(&self, state: &mut [f64]) -> Result<StepReport, StepError> {
         let (mut inner, mut errors) = self.parts(self.layout.checked(state)?);
         let (whole, sizes) = (&self.whole, &self.whole.codes.sizes);
-        let (numbered, mut room) = (whole.numbered(), vec![0.0; whole.room()]);
+        // Rounding errors that are carried keep several attitudes near their groups, too.
+        let numbered = StepCodes { tolerated: TOLERATED, ..whole.numbered() };
+        let mut room = vec![0.0; whole.room()];
         let mut attitude = inner[..sizes.entries].to_vec();
         let mut make = |constants: &StepConstants, next: &mut [f64], room: &mut [f64]| {
             let before = next.to_vec();

@@ -54,7 +54,7 @@ impl<B: Backend<f64>> Whole<B> {
             }
             let [momentum, angular] = [momentum, velocity].map(Vector3::from_column_slice);
             let rate = momentum.cross(&angular) + Vector3::from_column_slice(&torque);
-            let inertia = StepCodes { codes: &*codes, numbers: &numbers }.limit(advected).inertia();
+            let inertia = StepCodes::of(&codes, &numbers).limit(advected).inertia();
             dot(velocity, &solution(&inertia, rate.as_slice())) / (dot(velocity, velocity) + floor * floor)
         };
         Ok(self.with_density(rate))

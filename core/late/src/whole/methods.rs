@@ -132,7 +132,8 @@ pub fn stepper<B: Backend<f64>>(
                 Some(Err(error)) => Err(error),
             }
         }
-        _ if on_rotations => on_so3(),
+        // Sums of the advected parameters themselves are those of the compiled step.
+        _ if on_rotations && !(has_own_steps && method.floor.is_none() && method.substeps == 0) => on_so3(),
         Scheme::Step | Scheme::Composition(_) => {
             Ok(AnyStepper::new(CompensatedSums::<B>::of(declaration, numbers, h, method)?))
         }

@@ -1,5 +1,5 @@
 //! A declaration on SO(3) as a scene of the library, for its methods that know the free body: splittings, processed ones,
-//! collocation in quaternions, compensated sums.
+//! collocation in quaternions, compensated sums of divided steps.
 //!
 //! Whatever is advected is seen from the attitude, so that one type carries all: the directions of space, as seen from the
 //! body.

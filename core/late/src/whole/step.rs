@@ -17,6 +17,8 @@ use crate::code::{Backend, StepInputs};
 pub(super) struct StepCodes<'a, B: Backend<f64>> {
     pub(super) codes: &'a Codes<B>,
     pub(super) numbers: &'a [f64],
+    /// The distance of an attitude from its group beyond which it is restored, in units of rounding.
+    pub(super) tolerated: f64,
 }
 
 /// An increment that was made.
@@ -49,6 +51,10 @@ pub(super) fn room<B: Backend<f64>>(codes: &Codes<B>) -> usize {
 }
 
 impl<'a, B: Backend<f64>> StepCodes<'a, B> {
+    pub(super) fn of(codes: &'a Codes<B>, numbers: &'a [f64]) -> Self {
+        Self { codes, numbers, tolerated: if codes.rotations > 1 { 0.0 } else { TOLERATED } }
+    }
+
     /// The continuous limit at these advected parameters.
     pub(super) fn limit(&self, advected: &'a [f64]) -> Limit<'a, B> {
         Limit { codes: self.codes, numbers: self.numbers, advected }
@@ -223,7 +229,7 @@ impl<'a, B: Backend<f64>> StepCodes<'a, B> {
         let (attitude, others) = state.split_at_mut(sizes.entries);
         let mut found = vec![0.0; program.outputs];
         B::run(&program.code, &[], [(Array::Attitude, &*attitude)], &mut found);
-        let beyond = f64::EPSILON * if codes.rotations > 1 { 0.0 } else { TOLERATED };
+        let beyond = f64::EPSILON * self.tolerated;
         let (mut rest, mut any) = (&found[..], false);
         for factor in codes.factors.iter().filter(|factor| factor.is_restored()) {
             let size = factor.size() * factor.size();

@@ -199,7 +199,7 @@ impl<B: Backend<f64>> Whole<B> {
     }
 
     pub(super) fn numbered(&self) -> StepCodes<'_, B> {
-        StepCodes { codes: &self.codes, numbers: &self.numbers }
+        StepCodes::of(&self.codes, &self.numbers)
     }
 
     /// The state if it has the length of one.

@@ -213,7 +213,7 @@ impl<B: Backend<f64>> Varied<B> {
         state[..inner].copy_from_slice(&room.state[..inner]);
         state[last] = room.state[inner];
         let velocity = || {
-            let numbered = StepCodes { codes: &*self.whole.codes, numbers: &room.numbers };
+            let numbered = StepCodes::of(&self.whole.codes, &room.numbers);
             let limit = numbered.limit(&room.state[sizes.advected()..sizes.history()]);
             limit.velocity(&room.state[sizes.momentum()..sizes.advected()])
         };
@@ -476,7 +476,7 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
         let sizes = &self.whole.codes.sizes;
         let found = self.layout.checked(state).map(|state| {
             let numbers = self.numbers_at(self.time(state));
-            let numbered = StepCodes { codes: &*self.whole.codes, numbers: &numbers };
+            let numbered = StepCodes::of(&self.whole.codes, &numbers);
             numbered
                 .limit(&state[sizes.advected()..sizes.history()])
                 .velocity(&state[sizes.momentum()..sizes.advected()])
@@ -488,7 +488,7 @@ impl<B: Backend<f64>> Propagator for Varied<B> {
         let sizes = &self.whole.codes.sizes;
         self.layout.checked(state).map_or(f64::NAN, |state| {
             let numbers = self.numbers_at(self.time(state));
-            let numbered = StepCodes { codes: &*self.whole.codes, numbers: &numbers };
+            let numbered = StepCodes::of(&self.whole.codes, &numbers);
             let limit = numbered.limit(&state[sizes.advected()..sizes.history()]);
             limit.energy(&limit.velocity(&state[sizes.momentum()..sizes.advected()]))
         })

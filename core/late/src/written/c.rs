@@ -40,9 +40,10 @@ const DEVICE: Dialect = Dialect {
 };
 
 impl Dialect {
-    /// A template in this dialect, with a name in front of its own names.
-    fn text(&self, template: &str, prefix: &str) -> String {
-        template
+    /// A template in this dialect, with the declaration's name in front of its own names.
+    fn text(&self, template: &str, parts: &Parts<'_>) -> String {
+        let prefix = prefix(parts.declaration);
+        lines(template, parts.is_compensated)
             .replace("FUNCTION ", &format!("{} ", self.functions[0]))
             .replace("EXPORTED ", self.functions[1])
             .replace("TABLE ", &format!("{} ", self.tables[0]))
@@ -52,6 +53,13 @@ impl Dialect {
             .replace('@', &format!("{}_", prefix.to_uppercase()))
             .replace("MATHEMATICS\n", self.mathematics)
     }
+}
+
+/// The lines of a template for sums of this kind. Lines of one kind alone have a word in front.
+fn lines(template: &str, is_compensated: bool) -> String {
+    let [own, others] = if is_compensated { ["COMPENSATED ", "PLAIN "] } else { ["PLAIN ", "COMPENSATED "] };
+    let lines = template.split_inclusive('\n').filter(|line| !line.starts_with(others));
+    lines.map(|line| line.strip_prefix(own).unwrap_or(line)).collect()
 }
 
 /// The words of a declaration's name in small letters: `heavy`, `top` of `HeavyTop`.
@@ -82,14 +90,17 @@ pub fn prefix(declaration: &Declaration) -> String {
 /// A step as C99 that needs nothing but `math.h`, on any group: with `-ffp-contract=off` it has the bits of the whole step by
 /// interpretation. A step that takes special care is refused in C: it returns 0 and changes nothing. A step that is self-adjoint
 /// has a function for symmetric compositions of it, too; a continuous limit that is quadratic has the energy and the velocity of
-/// a momentum. Sums aren't compensated. All names begin with the [`prefix`].
+/// a momentum. Sums aren't compensated, which those of [`compensated`](super::compensated) are. All names begin with the [`prefix`].
 ///
 /// # Errors
 ///
 /// [`LateError::Step`]: there is no step as programs, as of a force alone.
 pub fn c(declaration: &Declaration) -> Result<String, LateError> {
-    let parts = Parts::of(declaration)?;
-    Ok(written(&parts, &C99))
+    Ok(c_of(&Parts::of(declaration)?))
+}
+
+pub(super) fn c_of(parts: &Parts<'_>) -> String {
+    written(parts, &C99)
 }
 
 /// The part of [`c`] that a unit includes to call the step of another.
@@ -98,9 +109,12 @@ pub fn c(declaration: &Declaration) -> Result<String, LateError> {
 ///
 /// The errors of [`c`].
 pub fn header(declaration: &Declaration) -> Result<String, LateError> {
-    let parts = Parts::of(declaration)?;
+    Ok(header_of(&Parts::of(declaration)?))
+}
+
+pub(super) fn header_of(parts: &Parts<'_>) -> String {
     let (head, _) = HEAD.split_once("#ifndef @ITERATIONS").unwrap_or((HEAD, ""));
-    Ok(C99.text(&filled(&parts, head), &prefix(declaration)))
+    C99.text(&filled(parts, head), parts)
 }
 
 /// The texts that follow [`header`] and [`c`] where the numbers are known: the stepper of each stage as a constant, which needs no
@@ -111,7 +125,10 @@ pub fn header(declaration: &Declaration) -> Result<String, LateError> {
 ///
 /// The errors of [`c`].
 pub fn numbered(whole: &Whole, start: [&[f64]; 3]) -> Result<[String; 2], LateError> {
-    let parts = Parts::of(whole.declaration())?;
+    Ok(numbered_of(&Parts::of(whole.declaration())?, whole, start))
+}
+
+pub(super) fn numbered_of(parts: &Parts<'_>, whole: &Whole, start: [&[f64]; 3]) -> [String; 2] {
     // A bound may be infinite.
     let number = |number: f64| if number.is_finite() { format!("{number:?}") } else { "INFINITY".to_owned() };
     let list = |numbers: &[f64]| {
@@ -130,12 +147,12 @@ pub fn numbered(whole: &Whole, start: [&[f64]; 3]) -> Result<[String; 2], LateEr
     }
     let [attitude, momentum, velocity] = start.map(list);
     let next = if gammas.len() == 1 { "$step($stages, state)" } else { "$compose($stages, $gamma, @STAGES, state)" };
-    Ok([NUMBERED_HEAD, NUMBERED].map(|text| {
+    [NUMBERED_HEAD, NUMBERED].map(|text| {
         let text = text.replace("STEPPERS", &steppers.join(",\n    ")).replace("GAMMAS", &list(&gammas));
         let text = text.replace("STAGE_COUNT", &gammas.len().to_string()).replace("NEXT", next);
         let text = text.replace("ATTITUDE", &attitude).replace("MOMENTUM", &momentum).replace("VELOCITY", &velocity);
-        C99.text(&text, &prefix(whole.declaration()))
-    }))
+        C99.text(&text, parts)
+    })
 }
 
 /// A step of many members as one text in `OpenCL` C, CUDA and C99, with two kernels: the start and so many steps.
@@ -144,8 +161,11 @@ pub fn numbered(whole: &Whole, start: [&[f64]; 3]) -> Result<[String; 2], LateEr
 ///
 /// The errors of [`c`].
 pub fn gpu(declaration: &Declaration) -> Result<String, LateError> {
-    let parts = Parts::of(declaration)?;
-    Ok(written(&parts, &DEVICE) + &DEVICE.text(KERNELS, &prefix(declaration)))
+    Ok(gpu_of(&Parts::of(declaration)?))
+}
+
+pub(super) fn gpu_of(parts: &Parts<'_>) -> String {
+    written(parts, &DEVICE) + &DEVICE.text(KERNELS, parts)
 }
 
 /// The head of a text with everything that a declaration decides.
@@ -197,7 +217,7 @@ fn written(parts: &Parts<'_>, dialect: &Dialect) -> String {
     if parts.has_limit() {
         text += LIMIT;
     }
-    dialect.text(&text, &prefix(parts.declaration))
+    dialect.text(&text, parts)
 }
 
 /// The functions of the exponential and the logarithm, those that the programs have, with the coefficients of their series.

@@ -3,9 +3,10 @@
 //! A language is a table, of its straight-line code, and a head with a driver: Newton's iteration, its end, and the
 //! step that follows. All drivers have the decisions of the whole step by interpretation, in the same order.
 //!
-//! `javascript → c → parts → language`, `rust → language`.
+//! `{compensated, javascript} → c → parts → language`, `rust → language`.
 
 mod c;
+pub mod compensated;
 mod javascript;
 mod language;
 mod parts;

@@ -1,7 +1,7 @@
 //! The parts of a whole step that every language writes.
 
 use liestep::__private::{log_ratio_series, stumpff_series};
-use liestep_derivation::whole::{MatrixFactor, Programs, WholeStep};
+use liestep_derivation::whole::{Form, MatrixFactor, Programs, WholeStep};
 use liestep_derivation::{Function, Program};
 
 use super::language::own_functions;
@@ -13,22 +13,41 @@ use crate::error::LateError;
 pub(super) struct Parts<'a> {
     pub(super) declaration: &'a Declaration,
     pub(super) step: WholeStep,
+    pub(super) is_compensated: bool,
     emitted: Emitted,
 }
 
 impl<'a> Parts<'a> {
     pub(super) fn of(declaration: &'a Declaration) -> Result<Self, LateError> {
+        Self::with(declaration, None)
+    }
+
+    /// The parts of a step whose sums are compensated.
+    pub(super) fn compensated(declaration: &'a Declaration) -> Result<Self, LateError> {
+        if !declaration.constraints.each.is_empty() {
+            return Err(LateError::Compensated { beside: "constraints on velocities" });
+        }
+        if declaration.energy.is_some() {
+            return Err(LateError::Compensated { beside: "a pace" });
+        }
+        Self::with(declaration, Some(&WholeStep::changes(declaration)?))
+    }
+
+    fn with(declaration: &'a Declaration, changes: Option<&Program>) -> Result<Self, LateError> {
         let step = WholeStep::of(declaration)?;
         let Programs { velocity, momentum, energy, .. } = &step.programs;
         let limit = [("velocity_of", velocity), ("momentum_of", momentum), ("energy_of", energy)];
-        let mut emitted = emitted(&step, if has_limit(&step) { &limit } else { &[] });
+        let limit = if has_limit(&step) { &limit[..] } else { &[] };
+        let more: Vec<_> =
+            changes.map(|program| ("changes", program)).into_iter().chain(limit.iter().copied()).collect();
+        let mut emitted = emitted(&step, &more);
         for (name, _) in &mut emitted.programs {
             // A driver has a variable of this name.
             if *name == "defect" {
                 *name = "defect_of";
             }
         }
-        Ok(Self { declaration, step, emitted })
+        Ok(Self { declaration, step, is_compensated: changes.is_some(), emitted })
     }
 
     /// Whether the velocity of a momentum and the energy are programs: where the continuous limit is quadratic.
@@ -56,7 +75,7 @@ impl<'a> Parts<'a> {
     pub(super) fn sizes(&self) -> Vec<(&'static str, usize)> {
         let WholeStep { sizes, programs, factors } = &self.step;
         let parameters: usize = self.declaration.parameters.iter().map(|parameter| parameter.kind.len()).sum();
-        vec![
+        let mut sizes = vec![
             ("PARAMETERS", parameters.max(1)),
             ("CONSTANTS", self.outputs("constants")),
             ("ENTRIES", sizes.entries),
@@ -66,10 +85,13 @@ impl<'a> Parts<'a> {
             ("DETS", sizes.dets),
             ("NEAR", sizes.near),
             ("ATTITUDES", sizes.attitudes),
+            ("ROTATIONS", factors.iter().filter(|factor| factor.form == Form::Rotation).count()),
             ("RESTORED", self.outputs("restored")),
             ("IS_WHOLE", usize::from(factors.len() == 1)),
             ("VARIES", usize::from(programs.safe.is_some())),
-        ]
+        ];
+        sizes.extend(self.is_compensated.then(|| ("CHANGES", self.outputs("changes"))));
+        sizes
     }
 
     /// A number of each factor that is restored.

@@ -4,6 +4,7 @@
 // A declaration names its fields by the letters of its formula.
 #![allow(non_snake_case)]
 
+use declarations::DoublePendulum;
 use liestep::groups::{LieGroup, SE2, SE3};
 use liestep::mechanics::{Effect, Regular};
 use liestep::methods::CompositionScheme;
@@ -100,6 +101,12 @@ fn they_are_those_of_the_compiled_step() {
     let product = Stepper::new(scene(), 0.01).expect("a stepper").compensated();
     assert_bits(&product, &terms, (liestep::groups::LieGroup::identity(), &velocity), "step, compensated");
     let _: (SE3, SO3) = liestep::groups::LieGroup::identity();
+
+    // Two rotations are looked at often, and restored as seldom as one.
+    let terms = [(DoublePendulum::<f64>::DECLARATION, numbers(&DoublePendulum::asymmetric()))];
+    let two = Stepper::new(DoublePendulum::asymmetric(), 0.01).expect("a stepper").compensated();
+    let velocity = [0.5, -0.8, 1.2, -0.3, 0.9, 0.4];
+    assert_bits(&two, &terms, (liestep::groups::LieGroup::identity(), &velocity), "step, compensated");
 }
 
 /// The momentum in space after many short steps, with compensated sums and without.

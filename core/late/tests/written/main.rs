@@ -1,5 +1,6 @@
 //! Steps as text in other languages: compiled C makes the library's steps, and Rust is formatted as by rustfmt.
 
+mod compensated;
 mod door;
 mod doors;
 mod groups;
@@ -189,6 +190,51 @@ fn so_has_one_of_a_product_with_an_own_group() {
     }
     fs::remove_dir_all(&folder).expect("the folder is there");
     assert_eq!(found, Some(expected));
+}
+
+/// A rotation of four dimensions beside one of space is restored as seldom as one alone.
+#[test]
+fn so_has_one_of_rotations_of_four_dimensions() {
+    let kinetic = |F: &str, J: &str| format!("(({F} - I) * {J} * ({F} - I).transpose()).trace() / (2 * h)");
+    let generators: Vec<String> = (0..4)
+        .flat_map(|i| (i + 1..4).map(move |j| (i, j)))
+        .map(|(i, j)| {
+            let rows = [0, 1, 2, 3]
+                .map(|row| [0, 1, 2, 3].map(|k| i32::from((row, k) == (j, i)) - i32::from((row, k) == (i, j))));
+            format!("{rows:?}")
+        })
+        .collect();
+    let declaration = parsed(&format!(
+        "#[lagrangian(group(Q = Four, F = SO3), generators(Four = [{}]), l_d = {} + {})]
+        struct Both {{ K: SMatrix<f64, 4, 4>, J: Matrix3<f64> }}",
+        generators.join(", "),
+        kinetic("Q", "K"),
+        kinetic("F", "J")
+    ));
+    let K = [1.0, 0.05, 0.02, 0.0, 0.05, 1.1, 0.03, 0.0, 0.02, 0.03, 1.2, 0.01, 0.0, 0.0, 0.01, 1.3];
+    let numbers = declaration.numbers(&[("K", &K), ("J", &[2.0, 0.1, 0.0, 0.1, 1.5, 0.0, 0.0, 0.0, 1.1])]);
+    let numbers = numbers.expect("numbers");
+    let whole: Whole = Whole::of(declaration, &numbers, STEP, Method::default()).expect("a stepper");
+    let attitude: Vec<f64> =
+        [4_usize, 3].iter().flat_map(|n| (0..n * n).map(move |at| f64::from(u8::from(at % (n + 1) == 0)))).collect();
+    let mut velocity = [0.3, -0.7, 1.1, 0.2, 0.5, -0.4, 0.9, 0.4, -2.0];
+    let start = whole.start(&attitude, &velocity).expect("a start");
+    // The velocity that the momentum determines, in its roundings.
+    whole.velocity(&start, &mut velocity);
+    let mut state = start.clone();
+    let mut expected = String::new();
+    for _ in 0..20 {
+        whole.run(&mut state, 100).expect("steps");
+        expected += &row(state[25..34].iter().chain(&state[..25]).copied());
+    }
+    let texts = [(Door::C, c(declaration)), (Door::Node, liestep_late::javascript(declaration))];
+    for (door, text) in texts.into_iter().filter(|(door, _)| is_there(door.program())) {
+        let (text, folder) = (text.expect("a step"), folder(&format!("four-{door:?}")));
+        let given = [&numbers[..], &attitude, &start[25..34], &velocity];
+        let found = door.rows((declaration, &text), &folder, (2_000, &[1.0]), given);
+        fs::remove_dir_all(&folder).expect("the folder is there");
+        assert_eq!(found.as_deref(), Some(&*expected), "{door:?}");
+    }
 }
 
 #[test]

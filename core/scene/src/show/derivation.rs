@@ -6,7 +6,7 @@ use liestep::effects::joints::{
 };
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::mechanics::Effect;
-use liestep_late::{Declaration, LateError};
+use liestep_late::{Declaration, LateError, compensated};
 
 use crate::file::effects::{EFFECTS, EffectEntry};
 use crate::file::joint::{Joint, Number};
@@ -59,15 +59,23 @@ pub enum Form {
     /// The straight-line code of a step in Rust.
     Rust,
     /// A step in C99.
-    C,
+    C(Sums),
     /// The step as data, with the claims that are to be checked.
     Certificate,
     /// The declarations of the step in C99, for other units.
-    Header,
+    Header(Sums),
     /// A step of many members in `OpenCL` C, CUDA and C99.
-    Gpu,
+    Gpu(Sums),
     /// A step in JavaScript.
     JavaScript,
+}
+
+/// The sums of a step in C: rounded, or compensated, whose rounding errors are added to the next changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Sums {
+    Rounded,
+    Compensated,
 }
 
 impl Form {
@@ -75,10 +83,13 @@ impl Form {
         match self {
             Self::Latex => Ok(liestep_late::latex(declaration)),
             Self::Rust => Ok(liestep_late::rust(declaration)),
-            Self::C => liestep_late::c(declaration),
+            Self::C(Sums::Rounded) => liestep_late::c(declaration),
+            Self::C(Sums::Compensated) => compensated::c(declaration),
             Self::Certificate => liestep_late::certificate(declaration),
-            Self::Header => liestep_late::header(declaration),
-            Self::Gpu => liestep_late::gpu(declaration),
+            Self::Header(Sums::Rounded) => liestep_late::header(declaration),
+            Self::Header(Sums::Compensated) => compensated::header(declaration),
+            Self::Gpu(Sums::Rounded) => liestep_late::gpu(declaration),
+            Self::Gpu(Sums::Compensated) => compensated::gpu(declaration),
             Self::JavaScript => liestep_late::javascript(declaration),
         }
     }
@@ -129,9 +140,14 @@ impl SceneFile {
         let own = self.own().map(|one| Ok(one.declaration));
         let sum = Declaration::sum(&listed.chain(own).collect::<Result<Vec<_>, _>>()?)?;
         let text = form.of(sum)?;
-        let numbers = matches!(form, Form::C | Form::Header).then(|| Model::of(self).ok()?.numbered()).flatten();
+        let numbers = match form {
+            Form::C(sums) | Form::Header(sums) => {
+                Model::of(self).ok().and_then(|model| model.numbered(sums == Sums::Compensated))
+            }
+            _ => None,
+        };
         Ok(match (form, numbers) {
-            (Form::Header, Some([head, _])) => text + &head,
+            (Form::Header(_), Some([head, _])) => text + &head,
             (_, Some(both)) => text + &both.concat(),
             (_, None) => text,
         })

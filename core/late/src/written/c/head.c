@@ -10,6 +10,7 @@
 COMPOSEDLIMITED   double $defect(const $state *);
        how far the attitude is from the group
 
+COMPENSATED    Sums are compensated: what rounding takes from attitude, momentum and advected values is added to their next changes.
    The attitude is a matrix for each factor, row by row, that maps body to space components; the momentum and the velocity that it
    determines are in the body frame. A solve has at most @ITERATIONS iterations, which may be defined before this text, and a step
    that takes more is refused. The numbers of the parameters, those of a matrix row by row:
@@ -31,6 +32,7 @@ typedef struct {
 typedef struct {
     double attitude[@ENTRIES], momentum[@N], advected[@ADVECTED];
     double history[2 * @N], guess[@N];
+COMPENSATED     double errors[@CHANGES];
     COUNT steps;
 } $state;
 

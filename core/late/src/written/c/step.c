@@ -48,6 +48,7 @@ EXPORTED void $start(const $stepper *stepper, $state *state, const double *attit
         state->history[i] = state->guess[i] = velocity[i] * (stepper->h * 0.5);
         state->history[@N + i] = 0.0;
     }
+COMPENSATED     for (int i = 0; i < @CHANGES; i++) state->errors[i] = 0.0;
     state->steps = 0;
 }
 
@@ -58,7 +59,9 @@ EXPORTED int $give($stepper *stepper, $state *state, const double *parameters) {
     $see(stepper, state->attitude, before);
     $see(&next, state->attitude, after);
     for (int i = 0; i < @CARRIED; i++) {
-        if (after[i] != before[i]) state->advected[i] = after[i];
+        if (after[i] == before[i]) continue;
+        state->advected[i] = after[i];
+COMPENSATED         state->errors[@ENTRIES + @N + i] = 0.0;
     }
     *stepper = next;
     return 1;
@@ -80,16 +83,35 @@ FUNCTION void $restore(const $stepper *stepper, $state *state) {
     double found[@RESTORED];
     const double *one = found;
     int any = 0;
+COMPENSATED     int has_moved = 0;
     $inputs in = {0};
     in.attitude = state->attitude;
     $restored(&in, found);
     for (int k = 0; k < @ATTITUDES; one += 1 + $sizes[k++]) {
-        if (!(one[0] > (@ATTITUDES > 1 ? 0.0 : 2048.0 * @EPSILON))) continue;
+PLAIN         if (!(one[0] > (@ROTATIONS > 1 ? 0.0 : 2048.0 * @EPSILON))) continue;
+COMPENSATED         if (!(one[0] > 2048.0 * @EPSILON)) continue;
+COMPENSATED         for (int i = 0; i < $sizes[k]; i++) {
+COMPENSATED             const double before = state->attitude[$places[k] + i], after = one[1 + i];
+COMPENSATED             has_moved |= after != before || !signbit(after) != !signbit(before);
+COMPENSATED         }
         $copy(state->attitude + $places[k], one + 1, $sizes[k]);
         any = 1;
     }
     if (any) $see(stepper, state->attitude, state->advected);
+COMPENSATED     /* A restored attitude has no rounding error, and neither has what is seen from it. */
+COMPENSATED     for (int i = 0; i < @CHANGES && has_moved; i++) {
+COMPENSATED         if (i < @ENTRIES || i >= @ENTRIES + @N) state->errors[i] = 0.0;
+COMPENSATED     }
 }
+COMPENSATED 
+COMPENSATED /* Sums and their rounding errors, which the next changes get back. */
+COMPENSATED FUNCTION void $sum(double *sums, double *errors, const double *changes, int count) {
+COMPENSATED     for (int i = 0; i < count; i++) {
+COMPENSATED         const double a = sums[i], b = changes[i] + errors[i], sum = a + b, of_b = sum - a;
+COMPENSATED         sums[i] = sum;
+COMPENSATED         errors[i] = (a - (sum - of_b)) + (b - of_b);
+COMPENSATED     }
+COMPENSATED }
 
 /* Newton's iteration for y, half the coordinates of F; the last may use the Jacobian again. */
 FUNCTION int $solve(const $stepper *stepper, $inputs *in, double *y) {
@@ -121,6 +143,7 @@ FUNCTION int $solve(const $stepper *stepper, $inputs *in, double *y) {
 FUNCTION int $increment(const $stepper *stepper, $state *state) {
     double y[@N], a[@N + 1], end[@ENTRIES + 4 * @N + @CARRIED + 1 + @NEAR];
     $inputs in = {0};
+COMPENSATED     double changes[@CHANGES];
     int is_far = 0;
     in.parameters = stepper->parameters;
     in.constants = stepper->constants;
@@ -140,15 +163,20 @@ FUNCTION int $increment(const $stepper *stepper, $state *state) {
         is_far |= !(near_here[k] * 9.0 < 1.0);
         if (!(near_here[k] * 4.0 < 1.0)) return 0;
     }
-    $copy(state->attitude, end, @ENTRIES);
-    $copy(state->momentum, end + @ENTRIES, @N);
-    $copy(state->advected, end + @ENTRIES + @N, @CARRIED);
+PLAIN     $copy(state->attitude, end, @ENTRIES);
+PLAIN     $copy(state->momentum, end + @ENTRIES, @N);
+PLAIN     $copy(state->advected, end + @ENTRIES + @N, @CARRIED);
+COMPENSATED     in.factors = state->errors + @ENTRIES + @N;
+COMPENSATED     $changes(&in, changes);
+COMPENSATED     $sum(state->attitude, state->errors, changes, @ENTRIES);
+COMPENSATED     $sum(state->momentum, state->errors + @ENTRIES, changes + @ENTRIES, @N);
+COMPENSATED     $sum(state->advected, state->errors + @ENTRIES + @N, changes + @ENTRIES + @N, @CARRIED);
     $copy(state->history, from, 2 * @N);
     $copy(state->guess, from + 2 * @N, @N);
     return 1 + is_far;
 }
 
-FUNCTION int $is_due(const $state *state) { return state->steps % (@ATTITUDES > 1 ? 64 : 1024) == 0; }
+FUNCTION int $is_due(const $state *state) { return state->steps % (@ROTATIONS > 1 ? 64 : 1024) == 0; }
 
 EXPORTED int $step(const $stepper *stepper, $state *state) {
     const int made = $increment(stepper, state);

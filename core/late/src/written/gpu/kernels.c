@@ -1,6 +1,8 @@
 
-/* Number k of member i is at k * members + i. A state has @ROWS numbers: attitude, momentum, advected, history, guess. */
-enum { @ROWS = @ENTRIES + @N + @ADVECTED + 3 * @N };
+PLAIN /* Number k of member i is at k * members + i. A state has @ROWS numbers: attitude, momentum, advected, history, guess. */
+PLAIN enum { @ROWS = @ENTRIES + @N + @ADVECTED + 3 * @N };
+COMPENSATED /* Number k of member i is at k * members + i. A state has @ROWS numbers: attitude, momentum, advected, history, guess, errors. */
+COMPENSATED enum { @ROWS = @ENTRIES + @N + @ADVECTED + 3 * @N + @CHANGES };
 
 FUNCTION void $load(LIESTEP_GLOBAL const double *rows, COUNT members, COUNT i, double *to, int count) {
     for (int k = 0; k < count; k++) to[k] = rows[k * members + i];
@@ -16,6 +18,7 @@ FUNCTION void $load_state(LIESTEP_GLOBAL const double *rows, COUNT members, COUN
     $load(rows + (@ENTRIES + @N) * members, members, i, state->advected, @ADVECTED);
     $load(rows + (@ENTRIES + @N + @ADVECTED) * members, members, i, state->history, 2 * @N);
     $load(rows + (@ENTRIES + 3 * @N + @ADVECTED) * members, members, i, state->guess, @N);
+COMPENSATED     $load(rows + (@ENTRIES + 4 * @N + @ADVECTED) * members, members, i, state->errors, @CHANGES);
 }
 
 FUNCTION void $store_state(LIESTEP_GLOBAL double *rows, COUNT members, COUNT i, const $state *state) {
@@ -24,6 +27,7 @@ FUNCTION void $store_state(LIESTEP_GLOBAL double *rows, COUNT members, COUNT i, 
     $store(rows + (@ENTRIES + @N) * members, members, i, state->advected, @ADVECTED);
     $store(rows + (@ENTRIES + @N + @ADVECTED) * members, members, i, state->history, 2 * @N);
     $store(rows + (@ENTRIES + 3 * @N + @ADVECTED) * members, members, i, state->guess, @N);
+COMPENSATED     $store(rows + (@ENTRIES + 4 * @N + @ADVECTED) * members, members, i, state->errors, @CHANGES);
 }
 
 FUNCTION void $begin_one(LIESTEP_GLOBAL double *states, LIESTEP_GLOBAL COUNT *steps, LIESTEP_GLOBAL int *status,

@@ -75,7 +75,7 @@ function restore(stepper, state) {
   given.attitude = state.attitude;
   restored(given, found);
   for (let k = 0; k < ATTITUDES; first += 1 + RESTORED_SIZES[k++]) {
-    if (!(found[first] > (ATTITUDES > 1 ? 0 : 2048 * EPSILON))) continue;
+    if (!(found[first] > (ROTATIONS > 1 ? 0 : 2048 * EPSILON))) continue;
     state.attitude.set(found.subarray(first + 1, first + 1 + RESTORED_SIZES[k]), RESTORED_PLACES[k]);
     isNearer = true;
   }
@@ -134,7 +134,7 @@ function increment(stepper, state) {
   return 1 + isFar;
 }
 
-const isDue = state => state.steps % (ATTITUDES > 1 ? 64 : 1024) === 0;
+const isDue = state => state.steps % (ROTATIONS > 1 ? 64 : 1024) === 0;
 
 // A step of a state; false where nothing was done.
 function step(stepper, state) {
