@@ -225,10 +225,18 @@ fn told_of(scene: &Scene, drawn: &SceneEnsemble, report: &Report, (is_share, fol
                 // Angles are in degrees, as in the summary of a run.
                 let (unit, size) =
                     if listed.unit == "rad" { ("deg", 1.0_f64.to_degrees()) } else { (&*listed.unit, 1.0) };
-                let numbers = [moments.mean, moments.variance().sqrt(), moments.least, moments.largest];
-                let [mean, spread, least, largest] = numbers.map(|number| number * size);
-                let line = format!("  {name:<20}{mean:>16.6e}{spread:>16.6e}{least:>16.6e}{largest:>16.6e}  {unit}");
+                // Without any number the mean is zero.
+                let mean = if moments.count == 0 { f64::NAN } else { moments.mean };
+                let numbers = [mean, moments.variance().sqrt(), moments.least, moments.largest];
+                let [mean, spread, least, largest] = numbers.map(|number| match number * size {
+                    number if number.is_finite() => format!("{number:.6e}"),
+                    _ => "–".to_owned(),
+                });
+                let line = format!("  {name:<20}{mean:>16}{spread:>16}{least:>16}{largest:>16}  {unit}");
                 let _ = writeln!(text, "{}", line.trim_end());
+                if moments.not_finite > 0 {
+                    let _ = writeln!(text, "  {:<20}{} members have no number there", "", moments.not_finite);
+                }
             }
         }
         for one in &drawn.histograms {

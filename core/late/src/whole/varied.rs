@@ -85,6 +85,10 @@ pub(super) struct Room<B: Backend<f64>> {
 const GIVEN: StepError = StepError::NonFinite { what: "value given to the step" };
 const OF_THIS_LENGTH: StepError = StepError::NonFinite { what: "constants of a step of this length" };
 
+fn finite(numbers: &[f64]) -> Result<(), StepError> {
+    if are_finite(numbers) { Ok(()) } else { Err(GIVEN) }
+}
+
 /// # Wrap: parameters and lengths of steps
 impl<B: Backend<f64>> Whole<B> {
     /// A stepper whose parameters change with time, by any [`Course`]. The numbers of the start are those at the time zero.
@@ -237,9 +241,7 @@ impl<B: Backend<f64>> Varied<B> {
             return stage.take(numbers, span[1]).map_err(|_| OF_THIS_LENGTH);
         };
         course.over(span, numbers);
-        if !are_finite(numbers) {
-            return Err(GIVEN);
-        }
+        finite(numbers)?;
         stage.take(numbers, span[1]).map_err(|_| GIVEN)?;
         stage.see(state);
         Ok(())
@@ -285,9 +287,7 @@ impl<B: Backend<f64>> Varied<B> {
         };
         let Some(course) = &self.course else { return Ok(iterations) };
         course.at(start + length, numbers);
-        if !are_finite(numbers) {
-            return Err(GIVEN);
-        }
+        finite(numbers)?;
         let sizes = &self.whole.codes.sizes;
         let seen = self.whole.codes.seen(numbers, &state[..sizes.entries]);
         state[sizes.advected()..sizes.history()].copy_from_slice(&seen);
@@ -307,19 +307,16 @@ impl<B: Backend<f64>> Varied<B> {
     /// end of a signal, those of the time serve. What is advected is left as it is.
     fn look_ahead(&self, room: &mut Room<B>, time: f64) -> Result<(), StepError> {
         let sizes = &self.whole.codes.sizes;
-        let advected = room.state[sizes.advected()..sizes.history()].to_vec();
-        let ahead = self.forget(room, [time, self.whole.h]);
-        if let (Err(error), Some(course)) = (ahead, &self.course) {
+        let carried = sizes.advected()..sizes.history();
+        let advected = room.state[carried.clone()].to_vec();
+        if let Err(error) = self.forget(room, [time, self.whole.h]) {
             let Room { stages, state, numbers, .. } = &mut *room;
-            course.at(time, numbers);
-            if !are_finite(numbers) {
-                return Err(error);
-            }
-            let [_, share] = self.stages[0];
-            stages[0].take(numbers, self.whole.h * share).map_err(|_| GIVEN)?;
+            self.course.as_ref().ok_or(error)?.at(time, numbers);
+            finite(numbers)?;
+            stages[0].take(numbers, self.whole.h * self.stages[0][1]).map_err(|_| GIVEN)?;
             stages[0].forget(state);
         }
-        room.state[sizes.advected()..sizes.history()].copy_from_slice(&advected);
+        room.state[carried].copy_from_slice(&advected);
         Ok(())
     }
 
@@ -353,14 +350,11 @@ impl<B: Backend<f64>> Varied<B> {
             parts = more;
         }
         room.load(state);
-        let mut numbers = self.whole.numbers.to_vec();
         if let Some(course) = &self.course {
-            course.over([start, length], &mut numbers);
+            course.over([start, length], &mut room.numbers);
         }
-        Err(self
-            .whole
-            .with(&numbers, length)
-            .map_or_else(|_| error.clone(), |whole| whole.explained(&room.state, error.clone())))
+        let whole = self.whole.with(&room.numbers, length);
+        Err(whole.map_or_else(|_| error.clone(), |whole| whole.explained(&room.state, error.clone())))
     }
 
     fn stretch(&self, state: &mut [f64], steps: u64, room: &mut Room<B>) -> Result<u64, StepError> {
