@@ -311,9 +311,9 @@ impl<B: Backend<f64>> Varied<B> {
         let advected = room.state[carried.clone()].to_vec();
         if let Err(error) = self.forget(room, [time, self.whole.h]) {
             let Room { stages, state, numbers, .. } = &mut *room;
-            self.course.as_ref().ok_or(error)?.at(time, numbers);
+            *numbers = self.numbers_at(time);
             finite(numbers)?;
-            stages[0].take(numbers, self.whole.h * self.stages[0][1]).map_err(|_| GIVEN)?;
+            stages[0].take(numbers, self.whole.h * self.stages[0][1]).map_err(|_| error)?;
             stages[0].forget(state);
         }
         room.state[carried].copy_from_slice(&advected);
