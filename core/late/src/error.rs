@@ -45,7 +45,7 @@ pub enum LateError {
     /// The text of a step with compensated sums isn't written beside this.
     #[error("sums aren't compensated beside {beside}: take a text without compensated sums")]
     Compensated {
-        /// What the declaration has.
+        /// The part of the declaration beside which there are no such sums.
         beside: &'static str,
     },
     /// The sum has no declarations.

@@ -69,7 +69,7 @@ int main(void) {{
     }
 }
 
-/// With compensated sums constants are those of `make`, too, and errors are carried; forms without these sums say so.
+/// Constants of a step with compensated sums are those of `make`, and its errors are carried; forms without such sums say so.
 #[test]
 fn its_sums_may_be_compensated() {
     if !is_there("cc") {

@@ -313,7 +313,7 @@ fn events_within_one_long_step() {
     printed(&folder, &["run", "flip.toml", "--csv", "--out", "."]);
     let table = fs::read_to_string(folder.join("flip.events.csv")).unwrap();
     let times: Vec<f64> = table.lines().skip(1).map(|row| row.split(',').nth(2).unwrap().parse().unwrap()).collect();
-    // By SciPy's DOP853 at 1e-12.
+    // Euler's equations by SciPy's DOP853 at 1e-12.
     let expected = [0.537_330_15, 8.301_608_65];
     assert!(times.len() == 2 && times.iter().zip(expected).all(|(one, other)| (one - other).abs() < 1e-7), "{times:?}");
 }

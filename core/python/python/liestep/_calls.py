@@ -35,12 +35,12 @@ ADVICE: list[tuple[tuple[str, ...], str, str]] = [
 
 
 def _called(call: str) -> str:
-    """What a call is written as: `run` for ``Stepper.run``, `stepper` for ``Stepper``."""
+    """The words of a call: `run` for ``Stepper.run``, `stepper` for ``Stepper``."""
     return call.rpartition(".")[2] if "." in call else call[0].lower() + call[1:]
 
 
 def _message(call: str, known: Mapping[str, inspect.Parameter], args: int, given: Mapping[str, Any]) -> str | None:
-    """What is wrong with a call's arguments, where that is their names or their number."""
+    """The message about a call's arguments, where their names or their number are wrong."""
     named = [name for name, one in known.items() if one.kind is not inspect.Parameter.POSITIONAL_ONLY and name != "self"]
     takes_any = any(one.kind is inspect.Parameter.VAR_KEYWORD for one in known.values())
     for name in () if takes_any else (name for name in given if name not in known):
