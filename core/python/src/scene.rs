@@ -3,7 +3,7 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use liestep::accuracy::{Accuracy, Choice};
+use liestep::accuracy::{Accuracy, Choice, Measure};
 use liestep::motion::{AnyStepper, Propagator as _};
 use liestep::with::{Method, Scheme};
 use liestep_late::{
@@ -145,6 +145,22 @@ impl Scene {
             QuestionError::Accuracy(error) => cause.unwrap_or_else(|| Failure::setup(&error)),
         })?;
         Ok((record(&stepper, started(&stepper, start)?, course)?, choice))
+    }
+
+    /// The error of the first one of two ends, each with the columns of the attitude and the velocity, by the other.
+    pub(crate) fn error(&self, ends: [&[Vec<f64>; 2]; 2], start: &[f64], time: f64) -> Result<f64, Failure> {
+        let factors = layout::<Backend>(self.declaration)?.factors;
+        let [end, exact] = ends.map(|[columns, velocity]| {
+            let (mut entries, mut rest) = (Vec::new(), &columns[..]);
+            for factor in &factors {
+                let (own, behind) = rest.split_at(factor.kind.columns().min(rest.len()));
+                entries.extend(factor.kind.entries(own));
+                rest = behind;
+            }
+            [entries, velocity.clone()]
+        });
+        let [end, exact] = [&end, &exact].map(|state| [&state[0][..], &state[1][..]]);
+        Ok(Measure::new(&factors, 1.0).error(end, exact, start, time))
     }
 
     /// The members of an ensemble.

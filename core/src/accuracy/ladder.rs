@@ -100,7 +100,7 @@ impl<'a> Ladder<'a> {
             let mut state = stepper.start(&start.attitude, &start.velocity)?;
             let iterations = stepper.attempt(&mut state, steps as u64).map_err(AccuracyError::Step)?;
             let cost = stepper.cost().unwrap_or(UNKNOWN).of_run(steps as u64, iterations);
-            let end = start.end(state.attitude(), &stepper.velocity(&state));
+            let end = EndNumbers { attitude: state.attitude().into(), velocity: stepper.velocity(&state) };
             let a_step = (cost - self.cost.once) / steps;
             Ok(Run { steps, a_step, cost, end: Some(end).filter(EndNumbers::is_finite).map(Rc::new) })
         };

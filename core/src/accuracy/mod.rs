@@ -19,12 +19,14 @@
 mod choice;
 mod error;
 mod ladder;
+mod measure;
 mod methods;
 mod question;
 mod search;
 
 pub use choice::{Choice, Offer};
 pub use error::AccuracyError;
+pub use measure::Measure;
 pub use methods::{Candidate, of_any_group};
 pub use question::{Accuracy, End, Trials};
 
@@ -121,9 +123,7 @@ const LEAST: f64 = 1e-17;
 
 /// The cheapest of these steppers for an accuracy, as by [`Stepper::for_accuracy`], for states that are numbers.
 ///
-/// `beside` is the attitude displaced by [`displacement`], by which the growth of rounding errors is measured. `units` are those in
-/// which the numbers of attitude and velocity count in an error, as a length of the system for its places, m, and speeds, m/s; empty
-/// ones are one.
+/// `beside` is the attitude displaced by [`displacement`], by which the growth of rounding errors is measured.
 ///
 /// # Errors
 ///
@@ -133,9 +133,9 @@ pub fn choose(
     accuracy: Accuracy,
     [attitude, beside]: [&[f64]; 2],
     velocity: &[f64],
-    units: [&[f64]; 2],
+    measure: Measure,
 ) -> Result<(AnyStepper, Choice), AccuracyError> {
-    let start = Start::of_numbers([attitude, beside], velocity, units, accuracy.horizon);
+    let start = Start::of_numbers([attitude, beside], velocity, measure, accuracy.horizon);
     let choice = checked(candidates, accuracy, &start)?;
     let stepper = (candidates[choice.chosen].make)(choice.chosen().step)?;
     Ok((stepper, choice))

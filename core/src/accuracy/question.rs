@@ -1,22 +1,31 @@
 //! The requested accuracy, and the error of a run.
 
+use alloc::rc::Rc;
 use alloc::vec::Vec;
 
+use super::measure::Measure;
 use crate::groups::LieGroup;
 use crate::numbers::{Coordinates as _, Entries};
 
-roots!();
-
 /// The requested error, and the time until which it holds.
 ///
-/// The error at the horizon `T` is that of attitude and body velocity together,
+/// The error at the horizon `T` is the largest one among the parts of the motion, so that none is divided by the motion of another.
+/// A rotation, or a group's matrix, is a part with its velocity `Ω` in the body frame,
 ///
 /// ```text
 /// error² = (|g − g*|/|g*|)² + (|Ω − Ω*|/s)²        s = max(|Ω*(T)|, |Ω(0)|, 1/T)
 /// ```
 ///
-/// with the exact `g*`, `Ω*`, and for matrices the Frobenius norm: on SO(3) the first part is `√(8/3) sin(θ/2)` for an
-/// attitude wrong by the angle `θ`, about `0.8 θ`.
+/// with the exact `g*`, `Ω*`, and for matrices the Frobenius norm: on SO(3) the first summand is `√(8/3) sin(θ/2)` for an
+/// attitude wrong by the angle `θ`, about `0.8 θ`. A place `x` with its velocity `v` is a part, also the translation of a rigid motion,
+///
+/// ```text
+/// error² = (|x − x*|/l)² + (|v − v*|/s)²        l = max(L, min(|x*|, s T))        s = max(|v*(T)|, |v(0)|, L/T)
+/// ```
+///
+/// with the length `L` of the system, 1 in the unit of the places where none is known. Several translations of one dimension, as in
+/// systems of bodies, are also judged relative to their mean, with `x` and `v` less the means: a uniform motion of all takes no digits
+/// from the motion within.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// The largest error at the horizon, up to 0.05: a larger one would be another motion.
@@ -51,8 +60,7 @@ pub(super) struct Start {
     pub(super) attitude: Vec<f64>,
     pub(super) velocity: Vec<f64>,
     pub(super) horizon: f64,
-    /// The units of the numbers of attitude and velocity; empty where all are one.
-    units: [Vec<f64>; 2],
+    measure: Rc<Measure>,
     /// A displacement by some roundings, in all directions, and the attitude displaced by it.
     aside: Vec<f64>,
     beside: Vec<f64>,
@@ -73,11 +81,11 @@ impl Start {
     pub(super) fn of_numbers(
         [attitude, beside]: [&[f64]; 2],
         velocity: &[f64],
-        units: [&[f64]; 2],
+        measure: Measure,
         horizon: f64,
     ) -> Self {
-        let (aside, units) = (displacement(velocity.len()), units.map(Vec::from));
-        Self { attitude: attitude.into(), velocity: velocity.into(), horizon, units, aside, beside: beside.into() }
+        let (aside, measure) = (displacement(velocity.len()), Rc::new(measure));
+        Self { attitude: attitude.into(), velocity: velocity.into(), horizon, measure, aside, beside: beside.into() }
     }
 
     pub(super) fn new<G: LieGroup<Scalar = f64>>(attitude: &G, velocity: &G::Vector, horizon: f64) -> Self {
@@ -85,8 +93,8 @@ impl Start {
         let aside = axes.fold(G::Vector::zero(), |sum, axis| sum * -0.8 + axis) * ROUNDINGS;
         let beside = attitude.compose(&G::from_increment(&G::hat(&aside)));
         let [attitude, beside] = [attitude, &beside].map(|attitude| numbers(&attitude.matrix()));
-        let units = [Vec::new(), Vec::new()];
-        Self { attitude, velocity: numbers(velocity), horizon, units, aside: numbers(&aside), beside }
+        let measure = Rc::new(Measure::new(&G::factors(), 1.0));
+        Self { attitude, velocity: numbers(velocity), horizon, measure, aside: numbers(&aside), beside }
     }
 
     /// This start with another horizon.
@@ -96,30 +104,16 @@ impl Start {
 
     /// A start that differs by some roundings, in all directions.
     pub(super) fn nearby(&self) -> Self {
-        let scale = size(&counted(&self.velocity, &self.units[1])).max(self.horizon.recip());
-        let mut velocity = self.velocity.clone();
-        for (number, (part, aside)) in velocity.iter_mut().zip(&self.aside).enumerate() {
-            *part += aside * scale * self.units[1].get(number).unwrap_or(&1.0);
-        }
+        let speeds = self.measure.speeds(&self.velocity, self.horizon);
+        let parts = self.velocity.iter().zip(&self.aside).zip(&speeds);
+        let velocity = parts.map(|((part, aside), speed)| part + aside * speed).collect();
         Self { attitude: self.beside.clone(), velocity, ..self.clone() }
-    }
-
-    /// The end of a run with this attitude and velocity, in the units of this start.
-    pub(super) fn end(&self, attitude: &[f64], velocity: &[f64]) -> EndNumbers {
-        let [of_attitude, of_velocity] = &self.units;
-        EndNumbers { attitude: counted(attitude, of_attitude), velocity: counted(velocity, of_velocity) }
     }
 
     /// The difference of two ends.
     pub(super) fn apart(&self, end: &EndNumbers, exact: &EndNumbers) -> f64 {
-        end.error(exact, &counted(&self.velocity, &self.units[1]), self.horizon)
+        self.measure.error(end.state(), exact.state(), &self.velocity, self.horizon)
     }
-}
-
-/// Numbers in these units.
-fn counted(numbers: &[f64], units: &[f64]) -> Vec<f64> {
-    let unit = |at: usize| units.get(at).unwrap_or(&1.0);
-    numbers.iter().enumerate().map(|(at, number)| number / unit(at)).collect()
 }
 
 /// The end of a run in numbers.
@@ -130,21 +124,18 @@ pub(super) struct EndNumbers {
 }
 
 impl EndNumbers {
-    /// The error of [`End::error`].
-    pub(super) fn error(&self, exact: &Self, start: &[f64], time: f64) -> f64 {
-        let apart = |a: &[f64], b: &[f64]| size(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
-        let scale = size(start).max(size(&exact.velocity)).max(time.abs().recip());
-        let attitudes = apart(&self.attitude, &exact.attitude) / size(&exact.attitude);
-        attitudes.hypot(apart(&self.velocity, &exact.velocity) / scale)
+    fn state(&self) -> [&[f64]; 2] {
+        [&self.attitude, &self.velocity]
     }
 
     pub(super) fn is_finite(&self) -> bool {
-        (size(&self.attitude) + size(&self.velocity)).is_finite()
+        let squares = self.attitude.iter().chain(&self.velocity).map(|number| number * number);
+        squares.sum::<f64>().is_finite()
     }
 }
 
 impl<G: LieGroup<Scalar = f64>> End<G> {
-    /// The error of this end, as [`Accuracy`] defines it: that of attitude and body velocity together, without a unit.
+    /// The error of this end, as [`Accuracy`] defines it, with `L = 1`: the largest one of its parts, without a unit.
     ///
     /// `exact` is the exact end of the run. `start` is the body velocity `Ω(0)` at its start, on SO(3) in rad/s. `time`
     /// is the time of the run, s; its sign doesn't matter. The error isn't finite if one of the ends isn't.
@@ -163,7 +154,8 @@ impl<G: LieGroup<Scalar = f64>> End<G> {
     /// ```
     #[must_use]
     pub fn error(&self, exact: &Self, start: &G::Vector, time: f64) -> f64 {
-        self.numbers().error(&exact.numbers(), &numbers(start), time)
+        let [end, exact] = [self, exact].map(Self::numbers);
+        Measure::new(&G::factors(), 1.0).error(end.state(), exact.state(), &numbers(start), time)
     }
 
     fn numbers(&self) -> EndNumbers {
@@ -176,8 +168,4 @@ fn numbers<E: Entries<f64>>(entries: &E) -> Vec<f64> {
     let mut numbers = Vec::new();
     entries.each(&mut |entry| numbers.push(entry));
     numbers
-}
-
-fn size(numbers: &[f64]) -> f64 {
-    numbers.iter().fold(0.0, |squares, number| squares + number * number).sqrt()
 }

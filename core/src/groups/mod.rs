@@ -218,7 +218,14 @@ pub trait LieGroup: Copy + Debug + PartialEq + 'static {
         } else {
             layout::FactorKind::Translation(rows)
         };
-        vec![layout::Factor::of(kind, Self::DIMENSION)]
+        let generator = |component: usize| {
+            let mut entries = Vec::new();
+            let axis = Self::Vector::axis(component);
+            Self::hat(&axis).each(&mut |entry| entries.push(f64::from(u8::from(entry != nalgebra::zero()))));
+            entries
+        };
+        let generators: Vec<_> = (0..Self::DIMENSION).map(generator).collect();
+        vec![layout::Factor::of(kind, Self::DIMENSION).with_generators(&generators)]
     }
 
     /// Writes the numbers of the [columns](layout::Factor::columns) of all factors over those of the element before, or over zeros, and returns the rest of the slice. A

@@ -129,7 +129,7 @@ pub(super) fn layout(carried: usize, memory: usize, factors: &[MatrixFactor]) ->
             Form::Translation => FactorKind::Translation(factor.size()),
             _ => FactorKind::Matrix(factor.size()),
         };
-        let named = Factor::of(kind, factor.dimension());
+        let named = Factor::of(kind, factor.dimension()).with_generators(&factor.basis.generators);
         if factors.len() > 1 { named.at(place + 1) } else { named }
     });
     let advected = (1..=carried).map(|number| format!("advected_{number}")).collect();

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use liestep::accuracy::{Accuracy, AccuracyError, Candidate, Choice, choose, displacement, of_any_group};
+use liestep::accuracy::{Accuracy, AccuracyError, Candidate, Choice, Measure, choose, displacement, of_any_group};
 use liestep::motion::{AnyStepper, Layout};
 use liestep::with::{Method, Scheme, Steppable as _};
 use liestep::{SO3, SetupError};
@@ -218,6 +218,7 @@ pub fn for_accuracy<B: Backend<f64>>(
     };
     let candidates: Vec<Candidate> = schemes.into_iter().map(candidate).collect();
     let Question { accuracy, attitude, velocity } = question;
+    let factors = layout::<B>(declaration).map_err(WholeError::from)?.factors;
     let beside = declaration.displaced(attitude, &displacement(velocity.len()));
-    Ok(choose(&candidates, accuracy, [attitude, &beside], velocity, [&[]; 2])?)
+    Ok(choose(&candidates, accuracy, [attitude, &beside], velocity, Measure::new(&factors, 1.0))?)
 }

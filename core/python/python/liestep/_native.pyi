@@ -1,5 +1,6 @@
 """The part that is written in Rust; the package's own modules are what is meant to be used."""
 
+from collections.abc import Sequence
 from typing import Any
 
 Named = list[tuple[str, list[float]]]
@@ -44,6 +45,9 @@ class Scene:
     def start(self, h: float, how: How, start: Any) -> State: ...
     def resume(self, h: float, how: How, numbers: list[float]) -> State: ...
     def ask(self, tolerance: float, start: Any, course: Any) -> dict[str, Any]: ...
+    def error(
+        self, end: Sequence[list[float]], exact: Sequence[list[float]], start: list[float], time: float
+    ) -> float: ...
     def members(self, h: float, how: How, start: Any, draws: Any, plan: Any) -> dict[str, Any]: ...
 
 class Signal:

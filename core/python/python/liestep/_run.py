@@ -227,15 +227,19 @@ class Run(Motion, Differentiable):
         On other groups the columns of the attitude, a row for each row.
         """
         if "q_w" not in self._names:
-            import numpy as np
-
-            end = next(place for place, name in enumerate(self._names) if name.startswith("velocity_"))
-            return np.stack([self[name] for name in self._names[1:end]], axis=1)
+            return self._attitudes()
         try:
             from scipy.spatial.transform import Rotation
         except ImportError:
             return self.matrix
         return Rotation.from_quat(self.quaternion[:, [1, 2, 3, 0]])
+
+    def _attitudes(self) -> Array:
+        """The columns of the attitude, a row for each row."""
+        import numpy as np
+
+        end = next(place for place, name in enumerate(self._names) if name.startswith("velocity_"))
+        return np.stack([self[name] for name in self._names[1:end]], axis=1)
 
     @property
     def matrix(self) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from math import ceil, hypot, inf, isfinite
+from math import ceil, inf, isfinite
 from typing import Any
 
 from . import _native
@@ -349,18 +349,23 @@ class _Estimate:
             pass
         try:
             error = self.left(4 * steps)
-            away = _apart(self._last(steps), self._last(4 * steps), self.until)
+            away = self._apart(steps, 4 * steps)
         except Error:
             return None
         return max(away + error, steps * 2.0**-52) if error < max(away, ROUNDED) else None
 
     def left(self, count: int) -> float:
         """The error of a run of so many steps, by those of half and of a quarter as many."""
-        finest, middle, coarsest = (self._last(steps) for steps in (count, count // 2, count // 4))
-        near, far = _apart(finest, middle, self.until), _apart(middle, coarsest, self.until)
+        far, near = self._apart(count // 4, count // 2), self._apart(count // 2, count)
         # The error falls by this where the steps are halved: by no more than the order of the method promises.
         falls = min(far / near, 2.0 ** _native.order(self.stepper.method)) if near > 0 else inf
         return near if near < ROUNDED else near / (falls - 1) if falls > LEAST_FALL else inf
+
+    def _apart(self, count: int, more: int) -> float:
+        """The error of the end by so many steps, as an accuracy measures it, if that by more steps were exact."""
+        end, exact = self._last(count), self._last(more)
+        ends = ((run._attitudes()[-1].tolist(), run.velocity[-1].tolist()) for run in (end, exact))
+        return self.stepper._native.error(*ends, end.velocity[0].tolist(), self.until)
 
     def _last(self, count: int) -> Run:
         if count not in self.ends:
@@ -376,18 +381,6 @@ LEAST_FALL = 1.6
 SURE = 0.02
 #: Below it differences are those of rounding.
 ROUNDED = 1e-10
-
-
-def _apart(one: Run, other: Run, time: float) -> float:
-    """The distance of two last states, as `for_accuracy` measures it."""
-    import numpy as np
-
-    def norm(vector: Any) -> float:
-        return float(np.linalg.norm(vector))
-
-    here, there = (run.matrix[-1] if "q_w" in run.names else run.attitude[-1] for run in (one, other))
-    speed = max(norm(one.velocity[0]), norm(one.velocity[-1]), 1 / abs(time))
-    return hypot(norm(here - there) / max(norm(here), 1.0), norm(one.velocity[-1] - other.velocity[-1]) / speed)
 
 
 def _finished(

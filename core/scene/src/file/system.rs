@@ -39,8 +39,9 @@ use crate::file::tables::Document;
 /// | `output` | `columns` that follow the time in a table, see [`Column`]; `every`: the number of steps from row to row |
 /// | `sweep`, `ensemble` | as for [one body](crate::SceneFile): the key of a body, a joint, a spring or an event follows its name, `joint.elbow.damping`, `spring.spring-1.k`; an ensemble draws keys of `body`, `gravity`, `joint`, `spring`, `orbit`, `control`, `wheel` and `pointing` |
 ///
-/// The error of an `accuracy` is that of the attitudes and places of all bodies together, relative to their size, and of their
-/// velocities relative to the largest: turns in rad count as places in m, so that it is one for bodies of about a metre.
+/// The error of an `accuracy` is the largest one among the bodies' attitudes with their angular velocities and their places with their
+/// velocities, these also relative to the mean of all, by [`Accuracy`](liestep::accuracy::Accuracy). Places count relative to the
+/// largest length of the system: radii of gyration, points of joints and springs, rods.
 ///
 /// Joints may form loops. Other effects on several bodies need a program: [`liestep::methods::Multibody`].
 #[derive(Clone)]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use liestep::accuracy::{Accuracy, Candidate, Choice, choose, displacement, of_any_group};
+use liestep::accuracy::{Accuracy, Candidate, Choice, Measure, choose, displacement, of_any_group};
 use liestep::methods::Redundancy;
 use liestep::motion::{AnyStepper, Moment, Propagator};
 use liestep::recording;
@@ -164,20 +164,9 @@ impl System {
         let has_steps_back = self.one_way().is_none();
         let candidates: Vec<_> = of_any_group(has_steps_back).map(candidate).collect();
         let beside = displaced(attitude);
-        let units = self.units();
-        let chosen = choose(&candidates, accuracy, [attitude, &beside], &velocity, units.each_ref().map(Vec::as_slice));
+        let measure = Measure::new(&layout.factors, self.size());
+        let chosen = choose(&candidates, accuracy, [attitude, &beside], &velocity, measure);
         chosen.map(|(_, choice)| choice).map_err(Stop::Accuracy)
-    }
-
-    /// The units in which attitudes and velocities count in an error: places and speeds in those of the system's size.
-    fn units(&self) -> [Vec<f64>; 2] {
-        let (bodies, size) = (self.bodies.len(), self.size());
-        let mut attitude = vec![1.0; ENTRIES * bodies];
-        for body in attitude.chunks_mut(ENTRIES) {
-            (0..3).for_each(|row| body[coordinate(row)] = size);
-        }
-        let velocity = (0..6 * bodies).map(|part| if part % 6 < 3 { 1.0 } else { size });
-        [attitude, velocity.collect()]
     }
 
     /// The events of joints with limits.
