@@ -4,9 +4,9 @@ mod trials;
 mod varying_inertia;
 
 use declarations::{DoublePendulum, FourthOrderTop, Motion, SlidingTop, Top as _};
-use liestep::accuracy::{Accuracy, AccuracyError, AccurateStepper};
+use liestep::accuracy::{self, Accuracy, AccuracyError, AccurateStepper};
 use liestep::effects::{CayleyBody, Dipole, Gravity, GravityGradient, PrincipalBody, RigidBody, Rotor, Spring};
-use liestep::groups::{Advected, LieGroup, SO2};
+use liestep::groups::{Advected, LieGroup, R3, SE3, SO2};
 use liestep::mechanics::{
     ContinuousLagrangian, DiagonalNonstandardInertia, DiscreteLagrangian, Inertia, Regular, Scene,
 };
@@ -341,4 +341,21 @@ fn a_scene_that_cannot_be_split_has_its_own_steps() {
     );
     let stepper = ask_coupled(&motion, accuracy).unwrap();
     assert!(stepper.choice().error <= 1e-5);
+}
+
+/// A rotation wrong by 1e-3 rad at a place 1000 km away, and places wrong relative to each other in a fast flight.
+#[test]
+fn errors_are_those_of_the_worst_part() {
+    let turn = SO3::exp(Vector3::x() * 1e-3);
+    let (far, velocity) = (Vector3::new(1e6, 0.0, 0.0), Vector6::new(0.0, 0.0, 1.0, 7e3, 0.0, 0.0));
+    let rigid = |turn: &SO3| SE3::from_rotation_and_translation(UnitQuaternion::from_matrix(turn.as_matrix()), far);
+    let exact = accuracy::End { attitude: rigid(&SO3::identity()), velocity };
+    let end = accuracy::End { attitude: rigid(&turn), velocity };
+    assert!((end.error(&exact, &velocity, 10.0) - 0.816e-3).abs() < 1e-6);
+
+    let velocity = Vector6::new(7e3, 0.0, 0.0, 7e3, 0.0, 0.0);
+    let attitude = |apart: f64| (R3::from(far), R3::from(far + Vector3::y() * apart));
+    let flying = |apart| accuracy::End { attitude: attitude(apart), velocity };
+    let error = flying(1.001).error(&flying(1.0), &velocity, 10.0);
+    assert!((error - 0.5e-3).abs() < 1e-6, "{error}");
 }

@@ -109,7 +109,9 @@ impl Measure {
         for part in &self.parts {
             let of_part = picked(start, &part.components).into_iter();
             let speed = self.rate(part.is_place, time).max(size(of_part));
-            part.components.iter().for_each(|component| speeds[*component] = speed);
+            for component in &part.components {
+                speeds[*component] = speed;
+            }
         }
         speeds
     }
@@ -133,7 +135,9 @@ fn from_mean(mut parts: Vec<[Vec<f64>; 2]>) -> Vec<[Vec<f64>; 2]> {
     for kind in 0..2 {
         for number in 0..parts.first().map_or(0, |part| part[kind].len()) {
             let mean = parts.iter().map(|part| part[kind][number]).sum::<f64>() / count;
-            parts.iter_mut().for_each(|part| part[kind][number] -= mean);
+            for part in &mut parts {
+                part[kind][number] -= mean;
+            }
         }
     }
     parts
