@@ -364,8 +364,8 @@ class _Estimate:
     def _apart(self, count: int, more: int) -> float:
         """The error of the end by so many steps, as an accuracy measures it, if that by more steps were exact."""
         end, exact = self._last(count), self._last(more)
-        ends = ((run._attitudes()[-1].tolist(), run.velocity[-1].tolist()) for run in (end, exact))
-        return self.stepper._native.error(*ends, end.velocity[0].tolist(), self.until)
+        ends = [[run._attitudes()[-1].tolist(), run.velocity[-1].tolist()] for run in (end, exact)]
+        return self.stepper._native.error(ends[0], ends[1], end.velocity[0].tolist(), self.until)
 
     def _last(self, count: int) -> Run:
         if count not in self.ends:
