@@ -34,7 +34,7 @@ fn dry_friction_stops_a_mass() {
         let mut system = Multibody::new();
         let mass = system.body(floating(m, [0.2; 3]));
         system.join(Joint::slider([Vector3::zeros(); 2], axis, Matrix3::identity()), None, mass);
-        system.between([None, Some(mass)], SliderFriction { force, speed, axis });
+        system.between([None, Some(mass)], SliderFriction { force, speed, axis, at_2: Vector3::zeros() });
         let stepper = system.stepper(0.01).unwrap();
         let velocity = six([0.0; 3], (axis * start).into());
         let mut state = stepper.start(&[(SO3::identity(), R3::identity())], &[velocity]).unwrap();
@@ -63,7 +63,10 @@ fn a_mass_on_an_incline() {
         let mut system = Multibody::new();
         let mass = system.body(falling(m, [0.2; 3]));
         system.join(Joint::slider([Vector3::zeros(); 2], down, Matrix3::identity()), None, mass);
-        system.between([None, Some(mass)], SliderFriction { force: share * pull, speed, axis: down });
+        system.between(
+            [None, Some(mass)],
+            SliderFriction { force: share * pull, speed, axis: down, at_2: Vector3::zeros() },
+        );
         let stepper = system.stepper(0.01).unwrap();
         let velocity = six([0.0; 3], (down * start).into());
         let mut state = stepper.start(&[at(0.0, 0.0, 0.0)], &[velocity]).unwrap();
@@ -97,7 +100,7 @@ fn friction_on_a_spring_is_of_second_order() {
         let mass = system.body(floating(m, [0.2; 3]));
         system.join(Joint::slider([Vector3::zeros(); 2], axis, Matrix3::identity()), None, mass);
         system.between([None, Some(mass)], SliderSpring { k, rest: 0.0, force: 0.0, axis, at_2: Vector3::zeros() });
-        system.between([None, Some(mass)], SliderFriction { force, speed, axis });
+        system.between([None, Some(mass)], SliderFriction { force, speed, axis, at_2: Vector3::zeros() });
         let stepper = system.stepper(h).unwrap();
         let mut state = stepper.start(&[(SO3::identity(), R3::from(axis))], &[Vector6::zeros()]).unwrap();
         let (start, mut energy) = (stepper.energy(&state), stepper.energy(&state));
@@ -121,7 +124,7 @@ fn friction_between_bodies_keeps_the_momenta() {
         let mut system = Multibody::new();
         let bodies = [floating(2.0, [0.3, 0.5, 0.4]), floating(1.0, [0.1, 0.15, 0.12])].map(|one| system.body(one));
         system.join(Joint::slider([Vector3::zeros(); 2], axis, Matrix3::identity()), Some(bodies[0]), bodies[1]);
-        system.between(bodies.map(Some), SliderFriction { force, speed: 1e-3, axis });
+        system.between(bodies.map(Some), SliderFriction { force, speed: 1e-3, axis, at_2: Vector3::zeros() });
         let stepper = system.stepper(0.005).unwrap();
         let turning = Vector3::new(0.3, -1.0, 0.5);
         let moving = Vector3::x() * 0.2 + axis * 0.5 + turning.cross(&(axis * 0.3));
@@ -246,7 +249,7 @@ fn sharp_friction_is_solved() {
                 let mut system = Multibody::new();
                 let mass = system.body(floating(m, [0.2; 3]));
                 system.join(Joint::slider([Vector3::zeros(); 2], axis, Matrix3::identity()), None, mass);
-                system.between([None, Some(mass)], SliderFriction { force, speed, axis });
+                system.between([None, Some(mass)], SliderFriction { force, speed, axis, at_2: Vector3::zeros() });
                 let stepper = system.stepper(5e-3).unwrap();
                 let start = six([0.0; 3], (axis * 2.0).into());
                 let mut state = stepper.start(&[at(0.0, 0.0, 0.0)], &[start]).unwrap();

@@ -232,8 +232,11 @@ fn all_kinds_keep_the_momenta() {
             system.between([Some(first), Some(second)], DryFriction { torque: 0.02, rate: 0.01 });
         }
         if shifts == 1 {
-            system.between([Some(first), Some(second)], SliderDamping { c: 0.7, axis: unit });
-            system.between([Some(first), Some(second)], SliderFriction { force: 0.3, speed: 0.2, axis: unit });
+            system.between([Some(first), Some(second)], SliderDamping { c: 0.7, axis: unit, at_2: Vector3::zeros() });
+            system.between(
+                [Some(first), Some(second)],
+                SliderFriction { force: 0.3, speed: 0.2, axis: unit, at_2: Vector3::zeros() },
+            );
         }
         let stepper = system.stepper(0.005).unwrap();
         let apart = if number == 7 { Vector3::new(0.3, 0.4, 0.0) } else { Vector3::zeros() };
@@ -323,7 +326,7 @@ fn a_damped_mass_on_a_slider() {
         let body = system.body(floating(m, [0.2; 3]));
         system.join(Joint::slider([Vector3::zeros(); 2], axis, Matrix3::identity()), None, body);
         system.between([None, Some(body)], SliderSpring { k, rest, force, axis, at_2: Vector3::zeros() });
-        system.between([None, Some(body)], SliderDamping { c, axis });
+        system.between([None, Some(body)], SliderDamping { c, axis, at_2: Vector3::zeros() });
         let stepper = system.stepper(h).unwrap();
         let start = (SO3::identity(), R3::from(axis));
         let mut state = stepper.start(&[start], &[Vector6::zeros()]).unwrap();

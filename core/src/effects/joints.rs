@@ -61,7 +61,7 @@ pub struct JointDamping {
     displacement(eta_1, eta_2),
     work = {
         let turn = Q * vee(F_2) - vee(F_1);
-        let share = 0.5 * h * torque / (turn.norm_squared() + h * h * rate * rate).sqrt();
+        let share = 0.5 * torque / (turn.norm_squared() / (h * h) + rate * rate).sqrt();
         -share * (turn.dot(&(Q * eta_2 - eta_1)) + turn.dot(&(Q * (F_2 * eta_2_next) - F_1 * eta_1_next)))
     },
 )]
@@ -115,18 +115,19 @@ pub struct SliderSpring {
     pub at_2: Vector3<f64>,
 }
 
-/// Viscous friction in a slider: the force `−c v` against the velocity `v` of the second body's origin in the axes of the first,
-/// along an axis there; `v` is the shift in a step over the step. Its work is negative at any strength.
+/// Viscous friction in a slider: the force `−c v` against the velocity `v` of the shift of [`SliderSpring`], at its point; `v` is the
+/// shift in a step over the step. Its work is negative at any strength.
 #[force(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(R_1 = F_1.seen_from(space), r = d_2.seen_from(d_1)),
+    advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
     displacement(eta_1, xi_1, eta_2, xi_2),
     work = {
-        let y = R_1.transpose() * r;
         let A = R_1 * F_1;
-        let z = A.transpose() * (r + d_2 - d_1);
-        let before = R_1.transpose() * (xi_2 - xi_1) - eta_1.cross(&y);
-        let after = A.transpose() * (xi_2_next - xi_1_next) - eta_1_next.cross(&z);
+        let B = R_2 * F_2;
+        let y = R_1.transpose() * (r + R_2 * at_2);
+        let z = A.transpose() * (r + d_2 - d_1 + B * at_2);
+        let before = R_1.transpose() * (xi_2 + R_2 * eta_2.cross(&at_2) - xi_1) - eta_1.cross(&y);
+        let after = A.transpose() * (xi_2_next + B * eta_2_next.cross(&at_2) - xi_1_next) - eta_1_next.cross(&z);
         -0.5 * c * axis.dot(&(z - y)) * axis.dot(&(before + after))
     },
 )]
@@ -136,6 +137,8 @@ pub struct SliderDamping {
     pub c: f64,
     /// The unit vector of the axis, in the axes of the first body.
     pub axis: Vector3<f64>,
+    /// The point of the second body where friction acts, in its axes, m.
+    pub at_2: Vector3<f64>,
 }
 
 /// Dry friction in a slider, regularised: the force `−f v/√(v² + u²)` against the velocity `v` of [`SliderDamping`]. Faster than the
@@ -145,14 +148,15 @@ pub struct SliderDamping {
 /// shorter steps or a larger `u` have a velocity that falls to zero.
 #[force(
     group(F_1 = SO3, d_1 = R3, F_2 = SO3, d_2 = R3),
-    advected(R_1 = F_1.seen_from(space), r = d_2.seen_from(d_1)),
+    advected(R_1 = F_1.seen_from(space), R_2 = F_2.seen_from(space), r = d_2.seen_from(d_1)),
     displacement(eta_1, xi_1, eta_2, xi_2),
     work = {
-        let y = R_1.transpose() * r;
         let A = R_1 * F_1;
-        let z = A.transpose() * (r + d_2 - d_1);
-        let before = R_1.transpose() * (xi_2 - xi_1) - eta_1.cross(&y);
-        let after = A.transpose() * (xi_2_next - xi_1_next) - eta_1_next.cross(&z);
+        let B = R_2 * F_2;
+        let y = R_1.transpose() * (r + R_2 * at_2);
+        let z = A.transpose() * (r + d_2 - d_1 + B * at_2);
+        let before = R_1.transpose() * (xi_2 + R_2 * eta_2.cross(&at_2) - xi_1) - eta_1.cross(&y);
+        let after = A.transpose() * (xi_2_next + B * eta_2_next.cross(&at_2) - xi_1_next) - eta_1_next.cross(&z);
         let shift = axis.dot(&(z - y));
         -0.5 * force * shift / (shift * shift / (h * h) + speed * speed).sqrt() * axis.dot(&(before + after))
     },
@@ -165,6 +169,8 @@ pub struct SliderFriction {
     pub speed: f64,
     /// The unit vector of the axis, in the axes of the first body.
     pub axis: Vector3<f64>,
+    /// The point of the second body where friction acts, in its axes, m.
+    pub at_2: Vector3<f64>,
 }
 
 /// The inertia of a motor's rotor in a joint that turns, as the joint feels it behind its gear: the kinetic energy `½ a ω²` of the

@@ -148,8 +148,8 @@ pub trait Propagator {
         0.0
     }
 
-    /// The forces of the joints on their second bodies in the step from this state, N, and their torques about the origins of
-    /// these, N m, both in space; none without joints.
+    /// The forces of the joints on their second bodies in the step from this state, N, and their torques about the joints' points
+    /// there, N m, both in space; none without joints.
     ///
     /// # Errors
     ///

@@ -240,10 +240,10 @@ fn add_terms(system: &mut Multibody, bodies: [Option<usize>; 2], joint: &Joint) 
             system.between(bodies, SliderSpring { k, rest: rest + axis.dot(&at[0]), force, axis, at_2: at[1] });
         }
         if let Some(c) = of(Number::Damping) {
-            system.between(bodies, SliderDamping { c, axis });
+            system.between(bodies, SliderDamping { c, axis, at_2: at[1] });
         }
         if let Some((force, speed)) = friction {
-            system.between(bodies, SliderFriction { force, speed, axis });
+            system.between(bodies, SliderFriction { force, speed, axis, at_2: at[1] });
         }
         if let Some(a) = of(Number::Armature) {
             system.between(bodies, SliderArmature { a, axis, at_2: at[1] });

@@ -223,18 +223,26 @@ impl<M: Mechanism> Devices<M> {
         Err(StepError::NonFinite { what: "torque of a law at the end of a step, which is too strong for its length" })
     }
 
-    /// The torques of the motors in a step of this start and length from a state with this velocity, within their limits, N m.
-    fn motors(&self, memory: &Memory, velocity: &[f64], [start, length]: [f64; 2]) -> Vec<f64> {
+    /// The torques of the motors that are numbers or signals, N m: their means over a time of this start and length, s; NaN where a
+    /// signal has none.
+    fn given(&self, span: [f64; 2]) -> Vec<f64> {
+        let of = |wheel: &Wheel| match &wheel.motor {
+            Motor::Number(torque) => *torque,
+            Motor::Law(_) => 0.0,
+            Motor::Signal(signal) => {
+                let mut mean = vec![f64::NAN; signal.width()];
+                signal.mean(span, &mut mean);
+                mean.first().copied().unwrap_or(f64::NAN)
+            }
+        };
+        self.file.wheel.iter().map(of).collect()
+    }
+
+    /// The torques of the motors in a step of this length, s, from a state with this velocity, within their limits, N m, where
+    /// numbers and signals have these.
+    fn motors(&self, memory: &Memory, velocity: &[f64], length: f64, given: &[f64]) -> Vec<f64> {
         let of = |(number, wheel): (usize, &Wheel)| {
-            let wanted = match &wheel.motor {
-                Motor::Number(torque) => *torque + memory.motors[number],
-                Motor::Law(_) => memory.motors[number],
-                Motor::Signal(signal) => {
-                    let mut mean = vec![0.0; signal.width()];
-                    signal.mean([start, length], &mut mean);
-                    mean.first().copied().unwrap_or(f64::NAN) + memory.motors[number]
-                }
-            };
+            let wanted = given[number] + memory.motors[number];
             let speed = memory.momenta[number] / wheel.inertia - self.turning(wheel, velocity);
             // A motor at its largest speed doesn't drive on; what else the body does to the speed isn't its business.
             let up = ((wheel.largest_speed - speed) * wheel.inertia / length.abs()).max(0.0);
@@ -245,8 +253,9 @@ impl<M: Mechanism> Devices<M> {
         self.file.wheel.iter().enumerate().map(of).collect()
     }
 
-    /// The memory of a state with the samples of a step of this length, s, and the torques of the motors in it.
-    fn sampled(&self, state: &[f64], length: f64) -> Result<(Vec<f64>, Memory, Vec<f64>), StepError> {
+    /// The memory of a state with the samples of a step of this length, s, and the torques of the motors in it, where numbers and
+    /// signals have these.
+    fn sampled(&self, state: &[f64], length: f64, given: &[f64]) -> Result<(Vec<f64>, Memory, Vec<f64>), StepError> {
         let (inner, mut memory) = self.parts(state);
         if !self.file.has_devices() {
             return Ok((inner, memory, Vec::new()));
@@ -255,25 +264,30 @@ impl<M: Mechanism> Devices<M> {
         if length > 0.0 && memory.part == 0.0 {
             self.sample(state, &mut memory, &velocity)?;
         }
-        let motors = self.motors(&memory, &velocity, [self.time(state), length]);
+        let motors = self.motors(&memory, &velocity, length, given);
         if motors.iter().all(|torque| torque.is_finite()) { Ok((inner, memory, motors)) } else { Err(OF_A_LAW) }
     }
 
-    /// A step of this length, s, from a state; returns the inner state and the memory. Torques are held in all of its stages, and
-    /// each has the means of the wheels' momenta over its own time.
+    /// A step of this length, s, from a state; returns the inner state and the memory. Torques of laws are held in all of its stages,
+    /// and each has the means of signals and of the wheels' momenta over its own time.
     fn advance(&self, state: &[f64], length: f64) -> Result<(Vec<f64>, Memory, StepReport), StepError> {
-        let (mut next, mut memory, motors) = self.sampled(state, length)?;
-        let (now, mut begin, mut iterations) = (self.time(state), 0.0, 0);
+        let now = self.time(state);
+        let of_step = self.given([now, length]);
+        let (mut next, mut memory, motors) = self.sampled(state, length, &of_step)?;
+        let (mut begin, mut iterations) = (0.0, 0);
         for (stage, share) in self.shares.iter().enumerate() {
             let [start, length] = [now + length * begin, length * share];
-            let [first, middle, last] = [0.0, 0.5, 1.0].map(|part| memory.after(&motors, start + length * part - now));
+            // A limit takes as much from each stage as from the whole step.
+            let of_stage = self.given([start, length]).into_iter().zip(&of_step);
+            let motors: Vec<_> = motors.iter().zip(of_stage).map(|(all, (own, mean))| all + (own - mean)).collect();
+            let [first, middle, last] = [0.0, 0.5, 1.0].map(|part| memory.after(&motors, length * part));
             let numbers = self.numbers([start, length], &middle, &memory.torques)?;
             self.push(&mut next, [start, length], &first, (&mut memory, false))?;
             iterations += self.mechanism.step(stage, &numbers, length, &mut next)?.iterations;
             self.push(&mut next, [start + length, length], &last, (&mut memory, true))?;
+            memory.momenta = last;
             begin += share;
         }
-        memory.momenta = memory.after(&motors, length);
         if !motors.is_empty() {
             let end = self.numbers([now + length, 0.0], &memory.momenta, &memory.torques)?;
             self.mechanism.project(&end, &mut next)?;
@@ -440,8 +454,16 @@ impl<M: Mechanism> Propagator for Devices<M> {
     }
 
     fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
-        let h = self.step_at(state, true);
-        let (inner, memory, motors) = self.sampled(self.layout.checked(state)?, h)?;
+        let (state, h) = (self.layout.checked(state)?, self.step_at(state, true));
+        // At the end of a signal the values there stand for those of a step.
+        self.joint_forces_with(state, [h; 2]).or_else(|_| self.joint_forces_with(state, [h, 0.0]))
+    }
+}
+
+impl<M: Mechanism> Devices<M> {
+    /// The forces of joints in a step of the first length, s, by the means of signals over the second.
+    fn joint_forces_with(&self, state: &[f64], [h, reach]: [f64; 2]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
+        let (inner, memory, motors) = self.sampled(state, h, &self.given([self.time(state), reach]))?;
         // Changes of momenta at the ends of the step act in it here: laws there as at its beginning, and the half of a motor's impulse
         // by which the mean momentum of its wheel differs from that at the end.
         let all = self.file.control.iter().zip(&memory.torques);
@@ -449,7 +471,7 @@ impl<M: Mechanism> Propagator for Devices<M> {
         for (wheel, torque) in self.file.wheel.iter().zip(&motors) {
             inputs[wheel.body].torque -= wheel.axis * (torque * 0.5);
         }
-        let numbers = self.mechanism.numbers([self.time(state), h], &inputs).ok_or(OF_A_LAW)?;
+        let numbers = self.mechanism.numbers([self.time(state), reach], &inputs).ok_or(OF_A_LAW)?;
         self.mechanism.joint_forces(&numbers, &inner)
     }
 }

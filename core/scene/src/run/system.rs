@@ -73,11 +73,7 @@ pub(crate) fn of_bodies(system: &System, file: &SceneFile, now: &Moment<'_, AnyS
         let none = || vec![[Vector3::repeat(f64::NAN); 2]; system.joints.len()];
         let forces = now.integrator().joint_forces(now).unwrap_or_else(|_| none());
         numbers.extend(forces.iter().flat_map(|[force, _]| force));
-        for (joint, [force, torque]) in system.joints.iter().zip(&forces) {
-            // About the joint's point, which the bodies share in most kinds.
-            let arm = pose(joint.bodies[1], now.numbers()).0 * joint.of.at[1];
-            numbers.extend(&(torque - arm.cross(force)));
-        }
+        numbers.extend(forces.iter().flat_map(|[_, torque]| torque));
     }
     sample.quaternions = Arc::clone(&file.group.quaternions);
     sample.numbers = numbers;

@@ -4,11 +4,9 @@
 //! increments of a stage are smooth in time.
 
 use alloc::sync::Arc;
-use alloc::vec;
 use alloc::vec::Vec;
 
-use nalgebra::Vector6;
-
+use super::forces::JointForces;
 use super::state::{Offsets, layout};
 use super::stepper::{MultibodyStepper, Stages};
 use super::workspace::Workspace;
@@ -71,7 +69,7 @@ impl MultibodyStepper {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn composed(mut self, scheme: CompositionScheme) -> Result<Self, SetupError> {
-        if scheme.base() != 2 {
+        if scheme.base() != 2 || !self.system.is_self_adjoint() {
             return Err(SetupError::NotSelfAdjoint);
         }
         self.stages = None;
@@ -89,13 +87,13 @@ impl MultibodyStepper {
         Stages { steppers, .. }: &Stages,
         state: &mut [f64],
         work: &mut Workspace,
-        mut forces: Option<&mut [Vector6<f64>]>,
+        mut forces: Option<&mut JointForces>,
     ) -> Result<StepReport, StepError> {
         let (steps, head) = (self.offsets.steps(state), self.offsets.attitudes() + 6 * self.bodies());
         let (mut whole, mut of_stage) = (core::mem::take(&mut work.whole), core::mem::take(&mut work.of_stage));
         whole.clear();
         whole.extend_from_slice(state);
-        let mut of_step = forces.as_ref().map(|forces| vec![Vector6::zeros(); forces.len()]);
+        let mut of_step = forces.as_ref().map(|forces| JointForces::zeros(forces.joints()));
         let mut stage = |(number, (gamma, stepper)): (usize, &(f64, Self))| {
             let memory = self.offsets.memory_of(number);
             of_stage.clear();
@@ -103,12 +101,9 @@ impl MultibodyStepper {
             of_stage.extend_from_slice(&whole[memory.clone()]);
             of_stage.push(steps);
             stepper.offsets.start_from_momenta(&mut of_stage, 0);
-            if let Some(all) = &mut of_step {
-                all.fill(Vector6::zeros());
-            }
-            let report = stepper.step_in(&mut of_stage, work, of_step.as_deref_mut())?;
-            for (force, part) in forces.iter_mut().flat_map(|all| all.iter_mut()).zip(of_step.iter().flatten()) {
-                *force += part * *gamma;
+            let report = stepper.step_in(&mut of_stage, work, of_step.as_mut())?;
+            if let (Some(all), Some(of_step)) = (&mut forces, &mut of_step) {
+                all.take_up(of_step, *gamma);
             }
             whole[..head].copy_from_slice(&of_stage[..head]);
             whole[memory].copy_from_slice(&of_stage[head..of_stage.len() - 1]);

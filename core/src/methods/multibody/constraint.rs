@@ -136,6 +136,12 @@ pub trait Constraint<const K: usize>: Debug + Send + Sync + 'static {
     /// its function per radian and per m.
     fn slope(&self, above: &Place, below: &Place) -> [Slope<K>; 2];
 
+    /// The point of the body below, in its axes, m, about which [torques](super::MultibodyStepper::joint_forces) of the joint count; by
+    /// default its origin.
+    fn point(&self) -> Vector3<f64> {
+        Vector3::zeros()
+    }
+
     /// Visits the parameters.
     fn describe(&self, visit: &mut dyn FnMut(&'static str, f64));
 }

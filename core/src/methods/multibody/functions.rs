@@ -4,7 +4,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::any::Any;
 
-use nalgebra::{Matrix3, Matrix6, Vector6};
+use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
 
 use super::constraint::{Constraint, Place};
 use super::joint::Joint;
@@ -21,6 +21,9 @@ pub(super) trait Functions: Send + Sync {
     fn rows(&self) -> usize;
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64>;
+
+    /// The point of the body below about which the torque counts, in its axes, m.
+    fn point(&self) -> Vector3<f64>;
 
     /// The joint as one that holds points, if it is one.
     fn of_points(&self) -> Option<PointJoint> {
@@ -54,6 +57,10 @@ impl<C: Constraint<K>, const K: usize> Functions for ConstraintFunctions<C, K> {
 
     fn rows(&self) -> usize {
         self.0.functions().min(K)
+    }
+
+    fn point(&self) -> Vector3<f64> {
+        self.0.point()
     }
 
     fn of_points(&self) -> Option<PointJoint> {
@@ -104,6 +111,10 @@ impl Functions for Part {
 
     fn rows(&self) -> usize {
         self.rows.len()
+    }
+
+    fn point(&self) -> Vector3<f64> {
+        self.all.point()
     }
 
     fn gap(&self, above: &Place, below: &Place) -> Vector6<f64> {

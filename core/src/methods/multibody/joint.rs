@@ -290,6 +290,10 @@ impl Constraint<6> for Joint {
         [of_above, of_below]
     }
 
+    fn point(&self) -> Vector3<f64> {
+        self.points[1]
+    }
+
     fn describe(&self, visit: &mut dyn FnMut(&'static str, f64)) {
         let mut each = |name, vector: &Vector3<f64>| vector.iter().for_each(|&entry| visit(name, entry));
         each("above", &self.points[0]);

@@ -33,6 +33,7 @@ mod couplings;
 mod elimination;
 mod ends;
 mod equations;
+mod forces;
 mod functions;
 mod graph;
 mod joint;

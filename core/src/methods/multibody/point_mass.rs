@@ -97,6 +97,11 @@ impl PlacedTerm<2> for JointInertia {
         (self.factors / self.h).iter().all(|factor| factor.is_finite())
     }
 
+    /// The term is zero where the joint is closed, as it is at both ends of a step.
+    fn is_self_adjoint(&self) -> bool {
+        true
+    }
+
     fn has_unknown(&self) -> bool {
         true
     }

@@ -5,6 +5,7 @@ use nalgebra::Vector6;
 use super::constraint::Place;
 use super::couplings::Coefficients;
 use super::equations::Equations;
+use super::forces::JointForces;
 use super::newton::Problem;
 use super::state::body_at;
 use super::stepper::MultibodyStepper;
@@ -31,7 +32,7 @@ impl MultibodyStepper {
         &self,
         state: &mut [f64],
         work: &mut Workspace,
-        forces: Option<&mut [Vector6<f64>]>,
+        forces: Option<&mut JointForces>,
     ) -> Result<StepReport, StepError> {
         self.step_of_run(state, work, forces, [true; 2])
     }
@@ -42,7 +43,7 @@ impl MultibodyStepper {
         &self,
         state: &mut [f64],
         work: &mut Workspace,
-        forces: Option<&mut [Vector6<f64>]>,
+        forces: Option<&mut JointForces>,
         [is_first, is_last]: [bool; 2],
     ) -> Result<StepReport, StepError> {
         let (offsets, steps) = (self.offsets, self.offsets.steps(state));
@@ -68,7 +69,7 @@ impl MultibodyStepper {
         let impulse = -2.0 / self.h;
         let mut forces = forces;
         if let Some(forces) = &mut forces {
-            work.equations.add_multipliers(&self.tree, impulse / self.h, forces);
+            self.add_forces(work, false, impulse / self.h, forces);
         }
         self.push_forward(work, impulse);
         if self.is_open {
@@ -83,7 +84,7 @@ impl MultibodyStepper {
         }
         self.check_left_out(&work.next_places)?;
         if let Some(forces) = &mut forces {
-            work.equations.add_multipliers(&self.tree, -1.0 / self.h, forces);
+            self.add_forces(work, true, -1.0 / self.h, forces);
         }
         if !is_finite(&work.momenta) || !is_finite(&work.half) {
             return Err(StepError::NonFinite { what: "momentum after the step" });

@@ -5,7 +5,7 @@ use alloc::sync::Arc;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use nalgebra::{Matrix3, Matrix6, Vector3, Vector6};
+use nalgebra::{Matrix6, Vector6};
 
 roots!();
 
@@ -17,8 +17,7 @@ use super::point_mass::is_point_mass;
 use super::state::{Offsets, body_at, layout};
 use super::system::{Multibody, ends};
 use super::terms::{PlacedTerm, space};
-use super::workspace::with_workspace;
-use super::{Body, parts, place};
+use super::{Body, place};
 use crate::error::{SetupError, StepError};
 use crate::mechanics::SceneVisitor;
 use crate::methods::CompositionScheme;
@@ -350,80 +349,6 @@ impl MultibodyStepper {
         } else {
             Err(StepError::NonFinite { what: "state of this layout" })
         }
-    }
-
-    /// The forces of the joints in the step from this state: the multipliers of their functions, N for lengths and N m for
-    /// cosines, the mean over the step. Each acts on the body below along the gradient of its function, and is followed
-    /// by zeros up to six.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`step`](Self::step).
-    ///
-    /// # Examples
-    ///
-    /// A body of one kilogram hangs on a pivot.
-    ///
-    /// ```
-    /// use liestep::groups::{LieGroup as _, R3};
-    /// use liestep::methods::{Joint, Multibody};
-    /// use liestep::{NonstandardInertia, SO3, lagrangian};
-    /// use nalgebra::{Vector3, Vector6};
-    ///
-    /// #[lagrangian(
-    ///     group(F = SO3, d = R3),
-    ///     advected(x = d.seen_from(space)),
-    ///     l_d = ((F - I) * J_d * (F - I).transpose()).trace() / (2.0 * h) + m * d.norm_squared() / (2.0 * h)
-    ///         - 0.5 * h * m * g * (x + x + d)[2],
-    /// )]
-    /// struct Heavy {
-    ///     J_d: NonstandardInertia,
-    ///     m: f64,
-    ///     g: f64,
-    /// }
-    ///
-    /// let J_d = NonstandardInertia::from_principal_moments(Vector3::new(0.1, 0.2, 0.25))?;
-    /// let mut system = Multibody::new();
-    /// let body = system.body(Heavy { J_d, m: 1.0, g: 9.81 });
-    /// system.join(Joint::ball([Vector3::zeros(), Vector3::z() * 0.4]), None, body);
-    /// let stepper = system.stepper(0.01)?;
-    /// let state = stepper.start(&[(SO3::identity(), R3::from(Vector3::z() * -0.4))], &[Vector6::zeros()])?;
-    /// let forces = stepper.reactions(&state)?;
-    /// assert!((forces[0] - Vector6::z() * 9.81).norm() < 1e-12);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn reactions(&self, state: &[f64]) -> Result<Vec<Vector6<f64>>, StepError> {
-        self.check(state)?;
-        let mut forces = alloc::vec![Vector6::zeros(); self.joints().len()];
-        if self.h == 0.0 {
-            return Ok(forces);
-        }
-        let mut state = state.to_vec();
-        self.offsets.start_from_momenta(&mut state, 0);
-        with_workspace(|work| self.step_in(&mut state, work, Some(&mut forces)))?;
-        Ok(forces)
-    }
-
-    /// The forces of the joints on their bodies below in the step from this state, N, and their torques about the origins of
-    /// these bodies, N m, both in the axes of space: the sums of [`reactions`](Self::reactions) along the gradients.
-    ///
-    /// # Errors
-    ///
-    /// The errors of [`step`](Self::step).
-    pub fn joint_forces(&self, state: &[f64]) -> Result<Vec<[Vector3<f64>; 2]>, StepError> {
-        self.check(state)?;
-        let places: Vec<_> = self.attitudes(state).iter().map(place).collect();
-        let axes = Matrix3::identity();
-        let force = |(joined, multipliers): (&Joint, Vector6<f64>)| {
-            let (mut unused, mut slopes) = (Matrix6::zeros(), Matrix6::zeros());
-            let at = [joined.above.map_or(&Place::SPACE, |above| &places[above]), &places[joined.below]];
-            joined.functions.slopes(at, [None, Some(&axes)], [&mut unused, &mut slopes]);
-            let rows = joined.functions.rows();
-            let sum = (0..rows).fold(Vector6::zeros(), |sum, row| sum + slopes.column(row) * multipliers[row]);
-            let (torque, force) = parts(&sum);
-            [force, torque]
-        };
-        Ok(self.joints().iter().zip(self.reactions(state)?).map(force).collect())
     }
 
     /// The configurations of both ends of a term between two bodies.

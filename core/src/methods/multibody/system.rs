@@ -259,6 +259,12 @@ impl Multibody {
         self.terms.iter().all(|(_, term)| term.is_finite()) && self.pairs.iter().all(|(_, term)| term.is_finite())
     }
 
+    /// Whether each term is its own adjoint, so that a step of `−h` undoes one of `h`.
+    pub(super) fn is_self_adjoint(&self) -> bool {
+        let of_bodies = self.terms.iter().all(|(_, term)| term.is_self_adjoint());
+        of_bodies && self.pairs.iter().all(|(_, term)| term.is_self_adjoint())
+    }
+
     /// The derivation of each term.
     pub(super) fn derivation(&self) -> String {
         let of_bodies = self.terms.iter().map(|(_, term)| term.derivation());

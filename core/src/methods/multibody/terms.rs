@@ -29,6 +29,9 @@ pub(super) trait PlacedTerm<const N: usize>: Send + Sync {
     /// Whether the constants of this step are finite.
     fn is_finite(&self) -> bool;
 
+    /// Whether a step of `−h` undoes what the term does in one of `h`.
+    fn is_self_adjoint(&self) -> bool;
+
     /// Whether the term has a part of the equations for the increments.
     fn has_unknown(&self) -> bool;
 
@@ -136,6 +139,10 @@ where
 
     fn is_finite(&self) -> bool {
         E::are_finite(&self.constants)
+    }
+
+    fn is_self_adjoint(&self) -> bool {
+        E::FACTS.is_self_adjoint
     }
 
     fn has_unknown(&self) -> bool {
