@@ -25,6 +25,25 @@ fn dry_friction_stops_a_wheel() {
     assert!(stepper.velocity(&state, wheel)[2].abs() < 1e-3);
 }
 
+/// Dry friction is undone by steps back, so that a composition has its order where friction is smooth beside a step.
+#[test]
+fn dry_friction_has_the_order_of_a_composition() {
+    let spun = |steps: u64| {
+        let mut system = Multibody::new();
+        let wheel = system.body(floating(1.0, [0.3, 0.3, 0.4]));
+        system.join(Joint::pin([Vector3::zeros(); 2], [Vector3::z(); 2]), None, wheel);
+        system.between([None, Some(wheel)], DryFriction { torque: 0.5, rate: 2.0 });
+        #[allow(clippy::cast_precision_loss)]
+        let stepper = system.stepper(2.0 / steps as f64).unwrap().composed(CompositionScheme::SUZUKI_4).unwrap();
+        let mut state = stepper.start(&[at(0.0, 0.0, 0.0)], &[six([0.0, 0.0, 3.0], [0.0; 3])]).unwrap();
+        stepper.run(&mut state, steps).unwrap();
+        stepper.velocity(&state, wheel)[2]
+    };
+    let finest = spun(320);
+    let [coarse, fine] = [10, 20].map(|steps| (spun(steps) - finest).abs());
+    assert!((coarse / fine - 16.0).abs() < 2.0, "not of order four: {coarse:e}, {fine:e}");
+}
+
 /// A mass with dry friction on a slider slows down by `f t/m` until it creeps; where friction is viscous, as in closed form.
 #[test]
 fn dry_friction_stops_a_mass() {

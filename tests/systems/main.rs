@@ -4,6 +4,7 @@
 
 mod couplings;
 mod energy;
+mod forces;
 mod friction;
 mod joints;
 mod limit;

@@ -7,7 +7,9 @@ use std::sync::{Arc, Mutex};
 
 use clap::ArgMatches;
 use liestep::motion::AnyStepper;
-use liestep_ensemble::{Ensemble, Failure, Local, Member, MemberFailure, Reduction, Report, Section, Store, Summary};
+use liestep_ensemble::{
+    Ensemble, Failure, Local, Member, MemberFailure, Moments, Reduction, Report, Section, Store, Summary,
+};
 use liestep_scene::{Column, EndHistogram, Mistake, Scene, SceneEnsemble, Spread, Watch, visible};
 
 use crate::failure::Failure as ProgramFailure;
@@ -209,6 +211,25 @@ fn columns(drawn: &SceneEnsemble) -> impl Iterator<Item = (Column, usize, &str)>
     drawn.columns.iter().flat_map(numbers)
 }
 
+/// The line of a column of this name and unit, and one of the members that have no number there.
+fn at_the_end(name: &str, unit: &str, moments: &Moments) -> String {
+    // Angles are in degrees, as in the summary of a run.
+    let (unit, size) = if unit == "rad" { ("deg", 1.0_f64.to_degrees()) } else { (unit, 1.0) };
+    // Without any number the mean is zero.
+    let mean = if moments.count == 0 { f64::NAN } else { moments.mean };
+    let numbers = [mean, moments.variance().sqrt(), moments.least, moments.largest];
+    let [mean, spread, least, largest] = numbers.map(|number| match number * size {
+        number if number.is_finite() => format!("{number:.6e}"),
+        _ => "–".to_owned(),
+    });
+    let line = format!("  {name:<20}{mean:>16}{spread:>16}{least:>16}{largest:>16}  {unit}");
+    let mut text = format!("{}\n", line.trim_end());
+    if moments.not_finite > 0 {
+        let _ = writeln!(text, "  {:<20}{} members have no number there", "", moments.not_finite);
+    }
+    text
+}
+
 fn told_of(scene: &Scene, drawn: &SceneEnsemble, report: &Report, (is_share, folder): (bool, &str)) -> String {
     let of_share = if is_share { ", in this share" } else { "" };
     let SceneEnsemble { members, seed, .. } = drawn;
@@ -222,21 +243,7 @@ fn told_of(scene: &Scene, drawn: &SceneEnsemble, report: &Report, (is_share, fol
             writeln!(text, "  {:<20}{:>16}{:>16}{:>16}{:>16}", "at the end", "mean", "deviation", "least", "largest");
         for ((_, _, name), listed) in columns(drawn).zip(Column::listed(&drawn.columns)) {
             if let Some(Summary::Moments(moments)) = report.reduced(name) {
-                // Angles are in degrees, as in the summary of a run.
-                let (unit, size) =
-                    if listed.unit == "rad" { ("deg", 1.0_f64.to_degrees()) } else { (&*listed.unit, 1.0) };
-                // Without any number the mean is zero.
-                let mean = if moments.count == 0 { f64::NAN } else { moments.mean };
-                let numbers = [mean, moments.variance().sqrt(), moments.least, moments.largest];
-                let [mean, spread, least, largest] = numbers.map(|number| match number * size {
-                    number if number.is_finite() => format!("{number:.6e}"),
-                    _ => "–".to_owned(),
-                });
-                let line = format!("  {name:<20}{mean:>16}{spread:>16}{least:>16}{largest:>16}  {unit}");
-                let _ = writeln!(text, "{}", line.trim_end());
-                if moments.not_finite > 0 {
-                    let _ = writeln!(text, "  {:<20}{} members have no number there", "", moments.not_finite);
-                }
+                text.push_str(&at_the_end(name, &listed.unit, moments));
             }
         }
         for one in &drawn.histograms {
@@ -252,4 +259,21 @@ fn told_of(scene: &Scene, drawn: &SceneEnsemble, report: &Report, (is_share, fol
     let _ =
         writeln!(text, "Written to {folder}: {} chunks, {} of them now", report.chunks - report.missing, report.made);
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Moments, at_the_end};
+
+    #[test]
+    fn members_without_a_number_are_counted() {
+        let of = |count, not_finite, mean, [least, largest]: [f64; 2]| {
+            let moments = Moments { count, not_finite, mean, squares: 0.0, least, largest };
+            at_the_end("angle", "rad", &moments).split_whitespace().map(str::to_owned).collect::<Vec<_>>().join(" ")
+        };
+        let none = of(0, 3, 0.0, [f64::INFINITY, f64::NEG_INFINITY]);
+        assert_eq!(none, "angle – – – – deg 3 members have no number there");
+        let all = of(2, 0, 0.5, [0.5; 2]);
+        assert_eq!(all, "angle 2.864789e1 0.000000e0 2.864789e1 2.864789e1 deg");
+    }
 }

@@ -219,3 +219,53 @@ fn mistakes_of_signals_have_their_place() {
     let pulse = thruster(PULSE, "4");
     assert!(refused(&folder, &pulse.replace("[output]", "density = { turn = 1 }\n[output]")).contains("density"));
 }
+
+/// Each stage of a composition has the mean of a motor's signal over its own time; the impulse of the whole step is cut to the motor's
+/// largest torque.
+#[test]
+fn wheels_with_signals_have_the_order_of_a_composition() {
+    let folder = folder("wheels_with_signals_have_the_order_of_a_composition");
+    let end = |step: f64, method: &str, limit: &str| {
+        let text = format!(
+            "title = \"A wheel\"\n[body]\nmoments = [2, 3, 4]\n[start]\neuler = [0.1, 0.5, 0.2]\nvelocity = [0.3, -0.2, \
+             0.5]\n[run]\nduration = 4\nstep = {step}\n{method}\n[output]\ncolumns = [\"quaternion\", \"velocity\", \
+             \"wheel-speeds\"]\n[[wheel]]\naxis = [0, 0.6, 0.8]\ninertia = 0.05\nspeed = 30\n{limit}torque = {{ times = \
+             [0, 4], values = [-0.4, 0.6], between = \"lines\" }}\n"
+        );
+        rows(&folder, &text).pop().unwrap()
+    };
+    let exact = end(0.0125, "method = { composition = \"Kahan-Li 8\" }", "");
+    for (method, order, steps) in
+        [("", 2.0, [0.05, 0.025]), ("method = { composition = \"Suzuki 4\" }", 4.0, [0.2, 0.1])]
+    {
+        let [coarse, fine] = steps.map(|step| apart(&[end(step, method, "")], &[exact.clone()]));
+        assert!(((coarse / fine).log2() - order).abs() < 0.1, "{method}: {coarse:e} {fine:e}");
+    }
+    // The momentum of the wheel about its axis, I (speed + Ω·a), changes by the impulse: no motor passes its largest torque.
+    let momentum = |row: &[f64]| 0.05 * (row[8] + 0.6 * row[6] + 0.8 * row[7]);
+    let spun = 0.05 * (30.0 + 0.6 * -0.2 + 0.8 * 0.5);
+    let ended = momentum(&end(0.1, "method = { composition = \"Suzuki 4\" }", ""));
+    assert!((ended - spun - 0.4).abs() < 1e-13, "{ended}");
+    let limited = momentum(&end(0.1, "method = { composition = \"Suzuki 4\" }", "largest_torque = 0.2\n"));
+    let cut: f64 = (0..40).map(|step| (-0.4 + 0.025 * (f64::from(step) + 0.5)).clamp(-0.2, 0.2) * 0.1).sum();
+    assert!((limited - spun - cut).abs() < 1e-13, "{limited} {cut}");
+}
+
+/// Where a signal ends with the run there is no step ahead of the last row: forces of joints are those of the signal's end.
+#[test]
+fn forces_of_joints_end_with_a_signal() {
+    let folder = folder("forces_of_joints_end_with_a_signal");
+    let scene = |times: &str, values: &str| {
+        format!(
+            "title = \"A cart\"\ngravity = {{ g = 9.81, up = [0, 0, 1] }}\n[[body]]\nname = \"cart\"\nm = 2\nmoments = [1, 1, \
+             1]\n[[joint]]\nname = \"rail\"\nkind = \"slider\"\nbodies = [\"cart\", \"space\"]\nat = [[0, 0, 0.1], [0, 0, \
+             0]]\naxes = [[1, 0, 0], [1, 0, 0]]\nforce = {{ times = {times}, values = {values}, between = \"lines\" }}\n[run]\n\
+             step = 0.05\nduration = 1\n[output]\ncolumns = [\"force\", \"torque\"]\nevery = 1\n"
+        )
+    };
+    let ended = rows(&folder, &scene("[0, 0.5, 1]", "[1, 2, 0.5]"));
+    let goes_on = rows(&folder, &scene("[0, 0.5, 1, 2]", "[1, 2, 0.5, 0.5]"));
+    assert!(ended.iter().flatten().all(|number| number.is_finite()), "{:?}", ended.last());
+    assert!(apart(&ended, &goes_on) < 1e-12);
+    assert!((ended[20][3].abs() - 19.62).abs() < 1e-9 && (ended[20][5].abs() - 0.05).abs() < 1e-9, "{:?}", ended[20]);
+}
