@@ -238,7 +238,7 @@ fn wheels_with_signals_have_the_order_of_a_composition() {
     for (method, order, steps) in
         [("", 2.0, [0.05, 0.025]), ("method = { composition = \"Suzuki 4\" }", 4.0, [0.2, 0.1])]
     {
-        let [coarse, fine] = steps.map(|step| apart(&[end(step, method, "")], &[exact.clone()]));
+        let [coarse, fine] = steps.map(|step| apart(&[end(step, method, "")], std::slice::from_ref(&exact)));
         assert!(((coarse / fine).log2() - order).abs() < 0.1, "{method}: {coarse:e} {fine:e}");
     }
     // The momentum of the wheel about its axis, I (speed + Ω·a), changes by the impulse: no motor passes its largest torque.
