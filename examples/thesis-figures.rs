@@ -54,9 +54,9 @@ fn draw(output: &mut Output) -> Result<(), Failure> {
 
     let round = Schedule::new(STEP, ROUND)?;
     let kinds = [
-        ("looping: case 3.8, reading A", Case::Looping, Reading::A),
-        ("cuspidal: case 3.9, reading A", Case::Cuspidal, Reading::A),
-        ("unidirectional: case 3.10, reading B", Case::Unidirectional, Reading::B),
+        ("looping: case 3.8, J_d = diag(2, 2, 1)", Case::Looping, Reading::A),
+        ("cuspidal: case 3.9, J_d = diag(2, 2, 1)", Case::Cuspidal, Reading::A),
+        ("unidirectional: case 3.10, J = diag(2, 2, 1)", Case::Unidirectional, Reading::B),
     ];
     let mut runs = Vec::new();
     for (name, case, reading) in kinds {

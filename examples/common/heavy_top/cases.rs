@@ -36,8 +36,8 @@ impl fmt::Display for Case {
 impl fmt::Display for Reading {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::A => "reading A, J_d = diag(2, 2, 1)",
-            Self::B => "reading B, J = diag(2, 2, 1)",
+            Self::A => "J_d = diag(2, 2, 1)",
+            Self::B => "J = diag(2, 2, 1)",
         })
     }
 }

@@ -22,7 +22,7 @@ pub fn overview(figures: &Figures<'_>) -> PlotResult<String> {
         let panels = [
             figures.geometry("Rigidity: how far R leaves the rotations"),
             figures.vertical_momentum("Angular momentum about the vertical: how far from its start"),
-            figures.energy_long("Energy: how far from its start"),
+            figures.energy_long("Energy: how far from its start; in a band it oscillates, a rise is drift"),
         ];
         for (place, panel) in right.split_evenly((3, 1)).iter().zip(panels) {
             panel.draw(place)?;

@@ -151,9 +151,16 @@ impl SceneFile {
         if let Some(system) = &self.system {
             return system.gaps(run);
         }
-        let unit = if self.group.is_rotation() { " kg m²/s" } else { "" };
-        let norm = |sample: &Sample| sample.numbers[self.group.in_space()].iter().map(|part| part * part).sum::<f64>();
-        let [before, after] = ends.map(|sample| short(norm(sample).sqrt()));
-        format!(", momentum {before} → {after}{unit}{}", self.last_state(ends[1]))
+        let momenta = ends.map(|sample| &sample.numbers[self.group.in_space()]);
+        let norms = momenta.map(|parts| parts.iter().map(|part| part * part).sum::<f64>().sqrt());
+        if !self.group.is_rotation() {
+            let [before, after] = norms.map(short);
+            return format!(", norm of the momentum {before} → {after}{}", self.last_state(ends[1]));
+        }
+        // By its components, as that along the vertical may be the one that is conserved; rounding errors of zero are zero.
+        let largest = norms[0].max(norms[1]);
+        let number = |part: &f64| short(if part.abs() <= 1e-13 * largest { 0.0 } else { *part });
+        let [before, after] = momenta.map(|parts| parts.iter().map(number).collect::<Vec<_>>().join(", "));
+        format!("\n  momentum in space [{before}] → [{after}] kg m²/s{}", self.last_state(ends[1]))
     }
 }
