@@ -51,12 +51,19 @@ def test_a_step_without_a_solution_has_words_of_python():
     (lambda top: top.stepper(0.01).run(velocty=[0, 0, 1], until=1), "`run` has no `velocty`; did you mean `velocity`?"),
     (lambda top: top.stepper(0.01, method="Suzuki 4"), "`stepper` has no `method`: a method has its kind"),
     (lambda top: top.stepper(0.01).run([0, 0, 1]), "`run` takes velocity, momentum, attitude"),
+    (lambda top: top.run([0, 0, 1]), "`run` takes arguments by their names, as `velocity=[0.5, 2, 12], until=10`"),
+    (lambda top: top.for_accuracy(1e-8, [0, 0, 1]), "`for_accuracy` takes all but tolerance by their names, as `velocity="),
     (lambda top: ls.euler(0, 0.8, foo=1), "`euler` has no `foo`: it has precession, nutation, spin, degrees"),
 ])
 def test_a_call_with_other_arguments_says_what_to_write(call, message):
     with pytest.raises(ls.CallError) as found:
         call(heavy_top())
     assert message in str(found.value) and isinstance(found.value, TypeError)
+
+
+def test_an_ensemble_ends_in_its_run():
+    with pytest.raises(ls.SetupError, match=r"`until` belongs into the run, as `term.ensemble\(100, …\).run\(folder, until=…\)`"):
+        heavy_top().ensemble(10, velocity=[0, 0, 1], until=10)
 
 
 @pytest.mark.parametrize("l,place", [

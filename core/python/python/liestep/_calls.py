@@ -55,6 +55,10 @@ def _message(call: str, known: Mapping[str, inspect.Parameter], args: int, given
     by_name = [name for name, one in known.items() if one.kind is inspect.Parameter.KEYWORD_ONLY]
     if args > len(places) and by_name:
         return f"`{_called(call)}` takes {', '.join(by_name)} by their names, as `{_called(call)}({by_name[0]}=…)`"
+    if args > len(places) and takes_any:
+        first = ", ".join(one.name for one in places if one.name != "self")
+        example = ", as `velocity=[0.5, 2, 12], until=10`" if _called(call) in ("run", "for_accuracy") else ""
+        return f"`{_called(call)}` takes {f'all but {first}' if first else 'arguments'} by their names{example}"
     return None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -186,6 +187,8 @@ class Ensemble:
                 pairs = enumerate(zip(spread.first, spread.second, strict=True))
                 self._draws += [_Draw(name, place, at, spread.kind, *pair) for place, pair in pairs]
                 start[name] = list(spread.first)
+            elif name in inspect.signature(Ensemble.run).parameters:
+                raise SetupError(f"`{name}` belongs into the run, as `term.ensemble(100, …).run(folder, {name}=…)`")
             elif name in drawn:
                 raise SetupError(f"`{name}` is drawn from `ls.normal(…)` or `ls.uniform(…)`, not from {shown(spread)}")
         self._start: _Start = _start(None if self._turns else start["attitude"], start["velocity"])
