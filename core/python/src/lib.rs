@@ -237,10 +237,10 @@ impl Scene {
         Ok(dictionary)
     }
 
-    /// The error of an end by an exact one, as an accuracy measures it.
+    /// The error of an end by the states of the exact motion, as an accuracy measures it.
     #[allow(clippy::needless_pass_by_value)]
-    fn error(&self, end: [Vec<f64>; 2], exact: [Vec<f64>; 2], start: Vec<f64>, time: f64) -> PyResult<f64> {
-        Ok(self.0.error([&end, &exact], &start, time)?)
+    fn error(&self, end: [Vec<f64>; 2], exact: Vec<[Vec<f64>; 2]>, time: f64) -> PyResult<f64> {
+        Ok(self.0.error(&end, &exact, time)?)
     }
 
     #[allow(clippy::needless_pass_by_value)]

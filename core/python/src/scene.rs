@@ -147,10 +147,14 @@ impl Scene {
         Ok((record(&stepper, started(&stepper, start)?, course)?, choice))
     }
 
-    /// The error of the first one of two ends, each with the columns of the attitude and the velocity, by the other.
-    pub(crate) fn error(&self, ends: [&[Vec<f64>; 2]; 2], start: &[f64], time: f64) -> Result<f64, Failure> {
+    /// The error of an end by the last of the states of the exact motion, from its start. Each has the columns of the attitude, and the
+    /// velocity.
+    pub(crate) fn error(&self, end: &[Vec<f64>; 2], exact: &[[Vec<f64>; 2]], time: f64) -> Result<f64, Failure> {
+        fn slices([attitude, velocity]: &[Vec<f64>; 2]) -> [&[f64]; 2] {
+            [attitude, velocity]
+        }
         let factors = layout::<Backend>(self.declaration)?.factors;
-        let [end, exact] = ends.map(|[columns, velocity]| {
+        let state = |[columns, velocity]: &[Vec<f64>; 2]| {
             let (mut entries, mut rest) = (Vec::new(), &columns[..]);
             for factor in &factors {
                 let (own, behind) = rest.split_at(factor.kind.columns().min(rest.len()));
@@ -158,9 +162,12 @@ impl Scene {
                 rest = behind;
             }
             [entries, velocity.clone()]
-        });
-        let [end, exact] = [&end, &exact].map(|state| [&state[0][..], &state[1][..]]);
-        Ok(Measure::new(&factors, 1.0).error(end, exact, start, time))
+        };
+        let (end, states) = (state(end), exact.iter().map(state).collect::<Vec<_>>());
+        let (Some(start), Some(last)) = (states.first(), states.last()) else { return Ok(f64::NAN) };
+        let mut measure = Measure::new(&factors, None);
+        states.iter().for_each(|state| measure.see(slices(start), slices(state)));
+        Ok(measure.error(slices(&end), slices(last), slices(start), time))
     }
 
     /// The members of an ensemble.

@@ -225,6 +225,22 @@ def test_an_accuracy_is_not_divided_by_the_motion_of_the_whole():
         assert 0.5 < rough.error / away(rough) < 5
 
 
+def test_an_accuracy_of_places_has_no_unit():
+    """Motions of a micrometre were off by 10 %, as shares of a metre."""
+    term = ls.lagrangian(
+        "R1", velocity="v", advected={"p": "o"}, o=ls.point([0.0]), discretise="trapezoid(Cayley)", l="m*v[0].powi(2)/2 - k*p[0].powi(2)/2",
+        m=1.0, k=100.0,
+    )
+    for until in (2 * np.pi, 10.0):
+        for size in (1, 1e-6, 1e-9):
+            start = {"attitude": ls.translation([size]), "velocity": [0.0], "until": until}
+            away = lambda run: max(abs(run["x"][-1] / size - np.cos(10 * until)), abs(run.velocity[-1, 0] / size / 10 + np.sin(10 * until)))
+            chosen = term.run(**start)
+            assert away(chosen) < 1e-6 and chosen.error < 1e-6
+            short = term.stepper(until / 1000).run(**start)
+            assert 0.5 < short.error / away(short) < 3
+
+
 def test_the_accuracy_of_a_system_is_not_divided_by_its_drift():
     """Two bodies on a spring, that fly together by 7 km/s, got fewer steps, and were off by .07 rad/s."""
 

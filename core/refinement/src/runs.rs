@@ -125,7 +125,8 @@ impl<
         (end, iterations): (End<G>, u64),
         exact: &End<G>,
     ) -> Result<Measurement, RefinementError> {
-        let error = end.error(exact, &self.integrator.velocity(&self.start), self.time);
+        let start = End { attitude: self.start.attitude(), velocity: self.integrator.velocity(&self.start) };
+        let error = end.error(exact, &start, self.time);
         if !error.is_finite() {
             return Err(RefinementError::NonFinite { step: self.step });
         }

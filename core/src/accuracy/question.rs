@@ -20,10 +20,11 @@ use crate::numbers::{Coordinates as _, Entries};
 /// attitude wrong by the angle `θ`, about `0.8 θ`. A place `x` with its velocity `v` is a part, also the translation of a rigid motion,
 ///
 /// ```text
-/// error² = (|x − x*|/l)² + (|v − v*|/s)²        l = max(L, min(|x*|, s T))        s = max(|v*(T)|, |v(0)|, L/T)
+/// error² = (|x − x*|/l)² + (|v − v*|/s)²        l = max(L, |x*(t) − x(0)|, 10⁻⁶ |x*|)        s = max(|v*(t)|, L/T)
 /// ```
 ///
-/// with the length `L` of the system, 1 in the unit of the places where none is known. Several translations of one dimension, as in
+/// with the length `L` of the system, 10⁻⁹ in the unit of the places where none is known, and the largest way and speed at the times
+/// `t` of the start, of parts of `T` by eighths, and of the end. Several translations of one dimension, as in
 /// systems of bodies, are also judged relative to their mean, with `x` and `v` less the means: a uniform motion of all takes no digits
 /// from the motion within.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,7 +94,7 @@ impl Start {
         let aside = axes.fold(G::Vector::zero(), |sum, axis| sum * -0.8 + axis) * ROUNDINGS;
         let beside = attitude.compose(&G::from_increment(&G::hat(&aside)));
         let [attitude, beside] = [attitude, &beside].map(|attitude| numbers(&attitude.matrix()));
-        let measure = Rc::new(Measure::new(&G::factors(), 1.0));
+        let measure = Rc::new(Measure::new(&G::factors(), None));
         Self { attitude, velocity: numbers(velocity), horizon, measure, aside: numbers(&aside), beside }
     }
 
@@ -107,12 +108,17 @@ impl Start {
         let speeds = self.measure.speeds(&self.velocity, self.horizon);
         let parts = self.velocity.iter().zip(&self.aside).zip(&speeds);
         let velocity = parts.map(|((part, aside), speed)| part + aside * speed).collect();
-        Self { attitude: self.beside.clone(), velocity, ..self.clone() }
+        Self { attitude: self.measure.displaced(&self.attitude, &self.beside), velocity, ..self.clone() }
+    }
+
+    /// Takes up a state of the motion, see [`Measure::see`].
+    pub(super) fn see(&mut self, state: &EndNumbers) {
+        Rc::make_mut(&mut self.measure).see([&self.attitude, &self.velocity], state.state());
     }
 
     /// The difference of two ends.
     pub(super) fn apart(&self, end: &EndNumbers, exact: &EndNumbers) -> f64 {
-        self.measure.error(end.state(), exact.state(), &self.velocity, self.horizon)
+        self.measure.error(end.state(), exact.state(), [&self.attitude, &self.velocity], self.horizon)
     }
 }
 
@@ -135,10 +141,10 @@ impl EndNumbers {
 }
 
 impl<G: LieGroup<Scalar = f64>> End<G> {
-    /// The error of this end, as [`Accuracy`] defines it, with `L = 1`: the largest one of its parts, without a unit.
+    /// The error of this end, as [`Accuracy`] defines it by the start and the end: the largest one of its parts, without a unit.
     ///
-    /// `exact` is the exact end of the run. `start` is the body velocity `Ω(0)` at its start, on SO(3) in rad/s. `time`
-    /// is the time of the run, s; its sign doesn't matter. The error isn't finite if one of the ends isn't.
+    /// `exact` is the exact end of the run, and `start` its start, with the body velocity, on SO(3) in rad/s. `time` is the time of the
+    /// run, s; its sign doesn't matter. The error isn't finite if one of the ends isn't.
     ///
     /// # Examples
     ///
@@ -150,12 +156,12 @@ impl<G: LieGroup<Scalar = f64>> End<G> {
     ///
     /// let exact = End { attitude: SO3::identity(), velocity: Vector3::z() };
     /// let end = End { attitude: SO3::exp(Vector3::z() * 1e-3), ..exact };
-    /// assert!((end.error(&exact, &Vector3::z(), 10.0) - 0.816e-3).abs() < 1e-6);
+    /// assert!((end.error(&exact, &exact, 10.0) - 0.816e-3).abs() < 1e-6);
     /// ```
     #[must_use]
-    pub fn error(&self, exact: &Self, start: &G::Vector, time: f64) -> f64 {
-        let [end, exact] = [self, exact].map(Self::numbers);
-        Measure::new(&G::factors(), 1.0).error(end.state(), exact.state(), &numbers(start), time)
+    pub fn error(&self, exact: &Self, start: &Self, time: f64) -> f64 {
+        let [end, exact, start] = [self, exact, start].map(Self::numbers);
+        Measure::new(&G::factors(), None).error(end.state(), exact.state(), start.state(), time)
     }
 
     fn numbers(&self) -> EndNumbers {

@@ -105,6 +105,7 @@ impl<'a> Search<'a> {
                 return None;
             }
             times /= SHORTER;
+            self.start.see(&survey.reference.0);
             survey = self.survey(times, None, Some(&survey))?;
         }
         let Survey { ladders, reference, best: Best { index, error, run }, .. } = survey;

@@ -220,5 +220,5 @@ pub fn for_accuracy<B: Backend<f64>>(
     let Question { accuracy, attitude, velocity } = question;
     let factors = layout::<B>(declaration).map_err(WholeError::from)?.factors;
     let beside = declaration.displaced(attitude, &displacement(velocity.len()));
-    Ok(choose(&candidates, accuracy, [attitude, &beside], velocity, Measure::new(&factors, 1.0))?)
+    Ok(choose(&candidates, accuracy, [attitude, &beside], velocity, Measure::new(&factors, None))?)
 }

@@ -363,13 +363,14 @@ class _Estimate:
 
     def _apart(self, count: int, more: int) -> float:
         """The error of the end by so many steps, as an accuracy measures it, if that by more steps were exact."""
-        end, exact = self._last(count), self._last(more)
-        ends = [[run._attitudes()[-1].tolist(), run.velocity[-1].tolist()] for run in (end, exact)]
-        return self.stepper._native.error(ends[0], ends[1], end.velocity[0].tolist(), self.until)
+        states = [list(zip(run._attitudes().tolist(), run.velocity.tolist())) for run in (self._last(count), self._last(more))]
+        return self.stepper._native.error(states[0][-1], states[1], self.until)
 
     def _last(self, count: int) -> Run:
         if count not in self.ends:
-            course, step = _Course(self.until, count, None, []), self.until / count
+            # In between are times by which an accuracy knows the size of the motion.
+            times = [self.until * part for part in (0, 8**-3, 8**-2, 8**-1, 1)]
+            course, step = _Course(self.until, 0, times, []), self.until / count
             made = self.stepper._native.run(step, self.stepper.method, self.start, course)
             self.ends[count] = _finished(self.stepper.term, step, made, [], "")
         return self.ends[count]

@@ -112,8 +112,8 @@ impl System {
     }
 
     /// The largest length of the system's own, m, in which its places and their rounding errors are counted: radii of gyration, points
-    /// of joints and springs from their bodies, rods, springs, and shifts at the start. It is one where all these are zero.
-    pub(crate) fn size(&self) -> f64 {
+    /// of joints and springs from their bodies, rods, springs, and shifts at the start; none where all these are zero.
+    pub(crate) fn length(&self) -> Option<f64> {
         let radius = |body: &SystemBody| body.J.as_ref().map(|J| (J.as_matrix().trace() / (2.0 * body.m)).sqrt());
         let arm = |(body, at): (Option<usize>, Vector3<f64>)| body.map_or(0.0, |_| at.norm());
         let of_joint = |Between { bodies, of }: &Between<Joint>| {
@@ -127,7 +127,12 @@ impl System {
         let of_joints = self.joints.iter().flat_map(of_joint);
         let all = self.bodies.iter().filter_map(radius).chain(of_joints).chain(self.springs.iter().flat_map(of_spring));
         let largest = all.fold(0.0, f64::max);
-        if largest > 0.0 { largest } else { 1.0 }
+        (largest > 0.0).then_some(largest)
+    }
+
+    /// This length, 1 m where there is none.
+    pub(crate) fn size(&self) -> f64 {
+        self.length().unwrap_or(1.0)
     }
 
     /// The place of the first number of a sample that is one of joints.

@@ -160,7 +160,7 @@ impl System {
         let has_steps_back = self.one_way().is_none();
         let candidates: Vec<_> = of_any_group(has_steps_back).map(candidate).collect();
         let beside = displaced(attitude);
-        let measure = Measure::new(&layout.factors, self.size());
+        let measure = Measure::new(&layout.factors, self.length());
         let chosen = choose(&candidates, accuracy, [attitude, &beside], &velocity, measure);
         chosen.map(|(_, choice)| choice).map_err(Stop::Accuracy)
     }
