@@ -10,7 +10,7 @@ use sha2::{Digest as _, Sha256};
 use crate::declaration::Declaration;
 use crate::emitted::{emitted, name};
 use crate::error::LateError;
-use crate::written::c;
+use crate::written::{Sums, c};
 
 /// The claims: a name, the program of the left side, and the equation.
 const CLAIMS: [(&str, &str, &str); 19] = [
@@ -67,7 +67,7 @@ pub fn certificate(declaration: &Declaration) -> Result<String, LateError> {
     let claims = CLAIMS.iter().filter(|claim| has(claim.0));
     let claims = claims.map(|(name, of, equation)| json!({"name": name, "of": of, "equation": equation}));
     let mut digest = "sha256:".to_owned();
-    for byte in Sha256::digest(c(declaration)?) {
+    for byte in Sha256::digest(c(declaration, Sums::Rounded)?) {
         let _ = write!(digest, "{byte:02x}");
     }
     let advected: Vec<Value> = declaration.carried.iter().map(carried).collect();

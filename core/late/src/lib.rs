@@ -32,4 +32,4 @@ pub use whole::{
     BackendInLanes, Between, Course, Derivatives, Direction, Gradient, Paced, Question, QuestionError, Reading, Row,
     Signal, SignalError, Transition, Varied, Whole, WholeError, for_accuracy, layout, stepper,
 };
-pub use written::{c, compensated, constant, gpu, header, is_exact, javascript, numbered, prefix, rust};
+pub use written::{Sums, c, constant, gpu, header, is_exact, javascript, numbered, prefix, rust};

@@ -7,7 +7,7 @@ use liestep::accuracy::{Accuracy, Choice, Measure};
 use liestep::motion::{AnyStepper, Propagator as _};
 use liestep::with::{Method, Scheme};
 use liestep_late::{
-    Course as _, Declaration, LateError, Question, QuestionError, Role, Whole, WholeError, for_accuracy, layout,
+    Course as _, Declaration, LateError, Question, QuestionError, Role, Sums, Whole, WholeError, for_accuracy, layout,
     stepper,
 };
 
@@ -108,7 +108,7 @@ impl Scene {
 
     /// A step in C99.
     pub(crate) fn c(&self) -> Result<String, Failure> {
-        Ok(liestep_late::c(self.declaration)?)
+        Ok(liestep_late::c(self.declaration, Sums::Rounded)?)
     }
 
     /// The step as data, with the claims that are to be checked.

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use liestep_derivation::Array;
 
 use super::language::Language;
-use super::parts::Parts;
+use super::parts::{Parts, Sums};
 use crate::declaration::Declaration;
 use crate::error::LateError;
 use crate::whole::Whole;
@@ -43,7 +43,7 @@ impl Dialect {
     /// A template in this dialect, with the declaration's name in front of its own names.
     fn text(&self, template: &str, parts: &Parts<'_>) -> String {
         let prefix = prefix(parts.declaration);
-        lines(template, parts.is_compensated)
+        lines(template, parts.sums)
             .replace("FUNCTION ", &format!("{} ", self.functions[0]))
             .replace("EXPORTED ", self.functions[1])
             .replace("TABLE ", &format!("{} ", self.tables[0]))
@@ -56,8 +56,11 @@ impl Dialect {
 }
 
 /// The lines of a template for sums of this kind. Lines of one kind alone have a word in front.
-fn lines(template: &str, is_compensated: bool) -> String {
-    let [own, others] = if is_compensated { ["COMPENSATED ", "PLAIN "] } else { ["PLAIN ", "COMPENSATED "] };
+fn lines(template: &str, sums: Sums) -> String {
+    let (own, others) = match sums {
+        Sums::Rounded => ("PLAIN ", "COMPENSATED "),
+        Sums::Compensated => ("COMPENSATED ", "PLAIN "),
+    };
     let lines = template.split_inclusive('\n').filter(|line| !line.starts_with(others));
     lines.map(|line| line.strip_prefix(own).unwrap_or(line)).collect()
 }
@@ -90,17 +93,13 @@ pub fn prefix(declaration: &Declaration) -> String {
 /// A step as C99 that needs nothing but `math.h`, on any group: with `-ffp-contract=off` it has the bits of the whole step by
 /// interpretation. A step that takes special care is refused in C: it returns 0 and changes nothing. A step that is self-adjoint
 /// has a function for symmetric compositions of it, too; a continuous limit that is quadratic has the energy and the velocity of
-/// a momentum. Sums aren't compensated, which those of [`compensated`](super::compensated) are. All names begin with the [`prefix`].
+/// a momentum. With compensated sums its bits are those of the method `step, compensated`. All names begin with the [`prefix`].
 ///
 /// # Errors
 ///
-/// [`LateError::Step`]: there is no step as programs, as of a force alone.
-pub fn c(declaration: &Declaration) -> Result<String, LateError> {
-    Ok(c_of(&Parts::of(declaration)?))
-}
-
-pub(super) fn c_of(parts: &Parts<'_>) -> String {
-    written(parts, &C99)
+/// [`LateError::Step`]: there is no step as programs, as of a force alone; [`LateError::Compensated`].
+pub fn c(declaration: &Declaration, sums: Sums) -> Result<String, LateError> {
+    Ok(written(&Parts::of(declaration, sums)?, &C99))
 }
 
 /// The part of [`c`] that a unit includes to call the step of another.
@@ -108,13 +107,10 @@ pub(super) fn c_of(parts: &Parts<'_>) -> String {
 /// # Errors
 ///
 /// The errors of [`c`].
-pub fn header(declaration: &Declaration) -> Result<String, LateError> {
-    Ok(header_of(&Parts::of(declaration)?))
-}
-
-pub(super) fn header_of(parts: &Parts<'_>) -> String {
+pub fn header(declaration: &Declaration, sums: Sums) -> Result<String, LateError> {
+    let parts = Parts::of(declaration, sums)?;
     let (head, _) = HEAD.split_once("#ifndef @ITERATIONS").unwrap_or((HEAD, ""));
-    C99.text(&filled(parts, head), parts)
+    Ok(C99.text(&filled(&parts, head), &parts))
 }
 
 /// The texts that follow [`header`] and [`c`] where the numbers are known: the stepper of each stage as a constant, which needs no
@@ -124,11 +120,8 @@ pub(super) fn header_of(parts: &Parts<'_>) -> String {
 /// # Errors
 ///
 /// The errors of [`c`].
-pub fn numbered(whole: &Whole, start: [&[f64]; 3]) -> Result<[String; 2], LateError> {
-    Ok(numbered_of(&Parts::of(whole.declaration())?, whole, start))
-}
-
-pub(super) fn numbered_of(parts: &Parts<'_>, whole: &Whole, start: [&[f64]; 3]) -> [String; 2] {
+pub fn numbered(whole: &Whole, start: [&[f64]; 3], sums: Sums) -> Result<[String; 2], LateError> {
+    let parts = Parts::of(whole.declaration(), sums)?;
     // A bound may be infinite.
     let number = |number: f64| if number.is_finite() { format!("{number:?}") } else { "INFINITY".to_owned() };
     let list = |numbers: &[f64]| {
@@ -147,12 +140,12 @@ pub(super) fn numbered_of(parts: &Parts<'_>, whole: &Whole, start: [&[f64]; 3]) 
     }
     let [attitude, momentum, velocity] = start.map(list);
     let next = if gammas.len() == 1 { "$step($stages, state)" } else { "$compose($stages, $gamma, @STAGES, state)" };
-    [NUMBERED_HEAD, NUMBERED].map(|text| {
+    Ok([NUMBERED_HEAD, NUMBERED].map(|text| {
         let text = text.replace("STEPPERS", &steppers.join(",\n    ")).replace("GAMMAS", &list(&gammas));
         let text = text.replace("STAGE_COUNT", &gammas.len().to_string()).replace("NEXT", next);
         let text = text.replace("ATTITUDE", &attitude).replace("MOMENTUM", &momentum).replace("VELOCITY", &velocity);
-        C99.text(&text, parts)
-    })
+        C99.text(&text, &parts)
+    }))
 }
 
 /// A step of many members as one text in `OpenCL` C, CUDA and C99, with two kernels: the start and so many steps.
@@ -160,12 +153,9 @@ pub(super) fn numbered_of(parts: &Parts<'_>, whole: &Whole, start: [&[f64]; 3]) 
 /// # Errors
 ///
 /// The errors of [`c`].
-pub fn gpu(declaration: &Declaration) -> Result<String, LateError> {
-    Ok(gpu_of(&Parts::of(declaration)?))
-}
-
-pub(super) fn gpu_of(parts: &Parts<'_>) -> String {
-    written(parts, &DEVICE) + &DEVICE.text(KERNELS, parts)
+pub fn gpu(declaration: &Declaration, sums: Sums) -> Result<String, LateError> {
+    let parts = Parts::of(declaration, sums)?;
+    Ok(written(&parts, &DEVICE) + &DEVICE.text(KERNELS, &parts))
 }
 
 /// The head of a text with everything that a declaration decides.

@@ -6,7 +6,7 @@ use liestep_derivation::{Function, Operation};
 
 use super::c::words;
 use super::language::Language;
-use super::parts::Parts;
+use super::parts::{Parts, Sums};
 use crate::declaration::Declaration;
 use crate::error::LateError;
 
@@ -18,7 +18,7 @@ use crate::error::LateError;
 ///
 /// [`LateError::Step`]: there is no step as programs, as of a force alone.
 pub fn javascript(declaration: &Declaration) -> Result<String, LateError> {
-    let parts = Parts::of(declaration)?;
+    let parts = Parts::of(declaration, Sums::Rounded)?;
     let bits = if has_functions_of_the_engine(&parts) { "not to the bit" } else { "to the bit" };
     let name = constant(declaration);
     let mut text =
@@ -65,7 +65,7 @@ pub fn javascript(declaration: &Declaration) -> Result<String, LateError> {
 ///
 /// The errors of [`c`](super::c()).
 pub fn is_exact(declaration: &Declaration) -> Result<bool, LateError> {
-    Ok(!has_functions_of_the_engine(&Parts::of(declaration)?))
+    Ok(!has_functions_of_the_engine(&Parts::of(declaration, Sums::Rounded)?))
 }
 
 /// The name of the constant of a declaration's step in JavaScript, `heavyTopStep` of `HeavyTop`: no word of the language.

@@ -3,10 +3,9 @@
 //! A language is a table, of its straight-line code, and a head with a driver: Newton's iteration, its end, and the
 //! step that follows. All drivers have the decisions of the whole step by interpretation, in the same order.
 //!
-//! `{compensated, javascript} → c → parts → language`, `rust → language`.
+//! `javascript → c → parts → language`, `rust → language`.
 
 mod c;
-pub mod compensated;
 mod javascript;
 mod language;
 mod parts;
@@ -14,4 +13,5 @@ mod rust;
 
 pub use c::{c, gpu, header, numbered, prefix};
 pub use javascript::{constant, is_exact, javascript};
+pub use parts::Sums;
 pub use rust::rust;

@@ -9,37 +9,39 @@ use crate::declaration::Declaration;
 use crate::emitted::{Emitted, emitted};
 use crate::error::LateError;
 
+/// The sums of a step in C: rounded, or compensated, where rounding takes from attitude, momentum and advected parameters
+/// nothing that isn't added to their next changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Sums {
+    Rounded,
+    Compensated,
+}
+
 /// A step with the declaration that it is of.
 pub(super) struct Parts<'a> {
     pub(super) declaration: &'a Declaration,
     pub(super) step: WholeStep,
-    pub(super) is_compensated: bool,
+    pub(super) sums: Sums,
     emitted: Emitted,
 }
 
 impl<'a> Parts<'a> {
-    pub(super) fn of(declaration: &'a Declaration) -> Result<Self, LateError> {
-        Self::with(declaration, None)
-    }
-
-    /// The parts of a step whose sums are compensated.
-    pub(super) fn compensated(declaration: &'a Declaration) -> Result<Self, LateError> {
-        if !declaration.constraints.each.is_empty() {
-            return Err(LateError::Compensated { beside: "constraints on velocities" });
-        }
-        if declaration.energy.is_some() {
-            return Err(LateError::Compensated { beside: "a pace" });
-        }
-        Self::with(declaration, Some(&WholeStep::changes(declaration)?))
-    }
-
-    fn with(declaration: &'a Declaration, changes: Option<&Program>) -> Result<Self, LateError> {
+    pub(super) fn of(declaration: &'a Declaration, sums: Sums) -> Result<Self, LateError> {
+        let refused = |beside| Err(LateError::Compensated { beside });
+        let changes = match sums {
+            Sums::Rounded => None,
+            Sums::Compensated if !declaration.constraints.each.is_empty() => {
+                return refused("constraints on velocities");
+            }
+            Sums::Compensated if declaration.energy.is_some() => return refused("a pace"),
+            Sums::Compensated => Some(WholeStep::changes(declaration)?),
+        };
         let step = WholeStep::of(declaration)?;
         let Programs { velocity, momentum, energy, .. } = &step.programs;
         let limit = [("velocity_of", velocity), ("momentum_of", momentum), ("energy_of", energy)];
         let limit = if has_limit(&step) { &limit[..] } else { &[] };
-        let more: Vec<_> =
-            changes.map(|program| ("changes", program)).into_iter().chain(limit.iter().copied()).collect();
+        let more: Vec<_> = changes.iter().map(|program| ("changes", program)).chain(limit.iter().copied()).collect();
         let mut emitted = emitted(&step, &more);
         for (name, _) in &mut emitted.programs {
             // A driver has a variable of this name.
@@ -47,7 +49,7 @@ impl<'a> Parts<'a> {
                 *name = "defect_of";
             }
         }
-        Ok(Self { declaration, step, is_compensated: changes.is_some(), emitted })
+        Ok(Self { declaration, step, sums, emitted })
     }
 
     /// Whether the velocity of a momentum and the energy are programs: where the continuous limit is quadratic.
@@ -90,7 +92,7 @@ impl<'a> Parts<'a> {
             ("IS_WHOLE", usize::from(factors.len() == 1)),
             ("VARIES", usize::from(programs.safe.is_some())),
         ];
-        sizes.extend(self.is_compensated.then(|| ("CHANGES", self.outputs("changes"))));
+        sizes.extend((self.sums == Sums::Compensated).then(|| ("CHANGES", self.outputs("changes"))));
         sizes
     }
 

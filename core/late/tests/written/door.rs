@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::{env, fs};
 
 use liestep_late::{Declaration, constant, prefix};
@@ -25,7 +26,10 @@ pub(crate) enum Door {
 pub(crate) type Course<'a> = (u32, &'a [f64]);
 
 pub(crate) fn folder(name: &str) -> PathBuf {
-    let folder = env::temp_dir().join(format!("liestep-written-{name}-{}", std::process::id()));
+    // Several tests write the text of one declaration at a time.
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let folder = env::temp_dir().join(format!("liestep-written-{name}-{}-{number}", std::process::id()));
     fs::create_dir_all(&folder).expect("a folder");
     folder
 }
@@ -39,7 +43,7 @@ pub(crate) fn is_there(program: &str) -> bool {
     found
 }
 
-fn list(numbers: &[f64]) -> String {
+pub(crate) fn list(numbers: &[f64]) -> String {
     numbers.iter().map(|number| format!("{number:?}")).collect::<Vec<_>>().join(", ")
 }
 
@@ -97,7 +101,7 @@ pub(crate) fn compile(folder: &Path, text: &str, uses_all: bool) {
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
 }
 
-const PRINT: &str = "
+pub(crate) const PRINT: &str = "
 #include <stdio.h>
 #include <string.h>
 #include <stdint.h>

@@ -5,17 +5,15 @@ use std::path::Path;
 use std::process::Command;
 
 use declarations::{DoublePendulum, Flyer, FullTop, LogTop};
-use liestep::groups::SE3;
+use liestep::groups::{LieGroup as _, SE3};
 use liestep::mechanics::Effect;
 use liestep::methods::CompositionScheme;
-use liestep::motion::Propagator as _;
-use liestep::with::Method;
 use liestep::{SO3, Stepper};
-use liestep_late::{Whole, c, constant, gpu, header, is_exact, javascript, prefix};
+use liestep_late::{Sums, c, constant, gpu, header, is_exact, javascript, prefix};
 use nalgebra::{Matrix4, SMatrix, UnitQuaternion, Vector3};
 
-use crate::door::{Door, STEP, compile, folder, is_there, row};
-use crate::{ExtendedPose, has_the_bits_of, has_the_bits_of_a_method, parsed, top};
+use crate::door::{Door, STEP, compile, folder, is_there};
+use crate::{ExtendedPose, entries, has_the_bits_of, has_the_bits_of_a_step, parsed, top};
 
 fn start() -> (SO3, &'static [f64]) {
     (SO3::exp(Vector3::new(0.3, -0.5, 0.2)), &[0.7, -1.1, 4.0])
@@ -28,16 +26,22 @@ fn javascript_has_the_bits_of_the_library() {
     }
     let text = javascript(parsed(FullTop::DECLARATION)).expect("a step");
     assert!(text.starts_with("// A step of FullTop on SO3, to the bit that of the library.\n"), "{text}");
-    let bits = |text: &str| has_the_bits_of(&top(), start().0, start().1, 10_000, (Door::Node, text));
+    let bits = |text: &str| has_the_bits_of_a_step(&top(), start().0, start().1, 10_000, (Door::Node, text));
     assert!(bits(&text));
     // A single wrong operation is detected, and so is an end of Newton's iteration that comes too soon.
     let (before, after) = text.split_once("function again").expect("a program");
     assert!(!bits(&format!("{before}function again{}", after.replacen("-x", "+x", 1))));
     assert!(!bits(&text.replace("(EPSILON * 0.015625)", "1e-3")));
     for scheme in [CompositionScheme::SUZUKI_4, CompositionScheme::KAHAN_LI_8] {
-        let stepper = Stepper::composed(top(), STEP, scheme).expect("a stepper");
+        let stepper = Stepper::composed(top(), STEP, scheme).expect("a stepper").into_any();
         let gammas: Vec<f64> = scheme.stages().collect();
-        assert!(has_the_bits_of_a_method(&top(), &stepper, start(), (2_000, &gammas), (Door::Node, &text)));
+        assert!(has_the_bits_of(
+            &top(),
+            &stepper,
+            (&entries(&start().0.matrix()), start().1),
+            (2_000, &gammas),
+            (Door::Node, &text)
+        ));
     }
 }
 
@@ -50,17 +54,23 @@ fn so_has_one_of_other_groups() {
     let text = javascript(parsed(DoublePendulum::<f64>::DECLARATION)).expect("a step");
     let velocity = [0.5, -0.8, 1.2, -0.3, 0.9, 0.4];
     let both = DoublePendulum::asymmetric();
-    assert!(has_the_bits_of(&both, (start().0, turned), &velocity, 2_000, (Door::Node, &text)));
+    assert!(has_the_bits_of_a_step(&both, (start().0, turned), &velocity, 2_000, (Door::Node, &text)));
     let J = Matrix4::new(0.3, 0.02, 0.0, 0.05, 0.02, 0.2, 0.01, 0.0, 0.0, 0.01, 0.25, -0.1, 0.05, 0.0, -0.1, 1.5);
     let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -0.2, 0.1));
     let attitude = SE3::from_rotation_and_translation(turn, Vector3::new(0.1, 0.2, 0.5));
     let text = javascript(parsed(Flyer::DECLARATION)).expect("a step");
-    assert!(has_the_bits_of(&Flyer { J }, attitude, &[0.5, -0.8, 1.2, 0.3, 0.2, -0.4], 2_000, (Door::Node, &text)));
+    assert!(has_the_bits_of_a_step(
+        &Flyer { J },
+        attitude,
+        &[0.5, -0.8, 1.2, 0.3, 0.2, -0.4],
+        2_000,
+        (Door::Node, &text)
+    ));
     let J = SMatrix::from_fn(|i, j| if i == j { [1.0, 1.1, 1.2, 1.3, 1.4][i] } else { 0.05 });
     let text = javascript(parsed(ExtendedPose::DECLARATION)).expect("a step");
     let velocity = [0.25, -0.4, 0.6, 0.15, 0.1, -0.2, 0.05, 0.3, -0.1];
     let attitude = liestep::groups::LieGroup::identity();
-    assert!(has_the_bits_of(&ExtendedPose { J }, attitude, &velocity, 1_000, (Door::Node, &text)));
+    assert!(has_the_bits_of_a_step(&ExtendedPose { J }, attitude, &velocity, 1_000, (Door::Node, &text)));
 }
 
 /// Texts with functions of the engine say so, and their motions agree to rounding.
@@ -72,24 +82,10 @@ fn functions_of_the_engine_are_said() {
     assert_eq!(constant(parsed(LogTop::DECLARATION)), "logTopStep");
 }
 
-#[test]
-fn kernels_have_the_bits_of_the_library() {
-    if !is_there("cc") {
-        return;
-    }
-    let text = gpu(parsed(FullTop::DECLARATION)).expect("a step");
-    let bits = |text: &str| has_the_bits_of(&top(), start().0, start().1, 10_000, (Door::Kernels, text));
-    assert!(bits(&text));
-    let text = gpu(parsed(Flyer::DECLARATION)).expect("a step");
-    let J = Matrix4::new(0.3, 0.02, 0.0, 0.05, 0.02, 0.2, 0.01, 0.0, 0.0, 0.01, 0.25, -0.1, 0.05, 0.0, -0.1, 1.5);
-    let attitude = liestep::groups::LieGroup::identity();
-    assert!(has_the_bits_of(&Flyer { J }, attitude, &[0.5, -0.8, 1.2, 0.3, 0.2, -0.4], 1_000, (Door::Kernels, &text)));
-}
-
 /// No name of a device's text is a type or a function of `OpenCL` C.
 #[test]
 fn kernels_name_nothing_of_opencl() {
-    let text = gpu(parsed(FullTop::DECLARATION)).expect("a step");
+    let text = gpu(parsed(FullTop::DECLARATION), Sums::Rounded).expect("a step");
     let reserved = ["half", "dot", "cross", "step", "global", "local", "private", "kernel", "long long", "image1d_t"];
     let head = text.rfind("#endif\n#endif\n").expect("a head");
     // Outside comments.
@@ -127,15 +123,17 @@ fn texts_have_names_of_their_own() {
         return;
     }
     let folder = folder("together");
-    let [top, flyer] = [FullTop::DECLARATION, Flyer::DECLARATION].map(|text| c(parsed(text)).expect("a step"));
-    let header = header(parsed(FullTop::DECLARATION)).expect("a head");
+    let [top, flyer] =
+        [FullTop::DECLARATION, Flyer::DECLARATION].map(|text| c(parsed(text), Sums::Rounded).expect("a step"));
+    let header = header(parsed(FullTop::DECLARATION), Sums::Rounded).expect("a head");
     let both = format!("{top}{flyer}");
     let main = "#include \"full_top.h\"\n#include \"full_top.h\"\nint main(void) {\n    full_top_stepper stepper;\n    const double p[FULL_TOP_PARAMETERS] = {0};\n    return full_top_make(&stepper, p, 0.01);\n}\n";
     let units = [("both.c", &*both), ("full_top.h", &header), ("main.c", main)];
     assert_eq!(together(&folder, &units, &[]), Some(0));
     assert_eq!(prefix(parsed(Flyer::DECLARATION)), "flyer");
     // Device texts share the head of their language.
-    let kernels = [FullTop::DECLARATION, Flyer::DECLARATION].map(|text| gpu(parsed(text)).expect("a step"));
+    let kernels =
+        [FullTop::DECLARATION, Flyer::DECLARATION].map(|text| gpu(parsed(text), Sums::Rounded).expect("a step"));
     compile(&folder, &format!("{}int main(void) {{ return 0; }}\n", kernels.concat()), false);
     fs::remove_dir_all(folder).expect("the folder is there");
 }
@@ -147,7 +145,7 @@ fn iterations_have_a_bound() {
         return;
     }
     let folder = folder("bound");
-    let text = c(parsed(FullTop::DECLARATION)).expect("a step");
+    let text = c(parsed(FullTop::DECLARATION), Sums::Rounded).expect("a step");
     let main = "#include <string.h>
 int main(void) {
     const double p[] = {2, 0, 0, 0, 2, 0, 0, 0, 1, 1, 9.81, 0.3, 0, 1, 0, 0, 1}, r[] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, m[] = {30, 0, 48}, v[] = {10, 0, 12};
@@ -164,62 +162,5 @@ int main(void) {
     let steps = |bound: &str| together(&folder, &[("bound.c", &format!("{text}{main}"))], &[bound]);
     assert_eq!(steps("-DFULL_TOP_ITERATIONS=1"), Some(0));
     assert_eq!(steps("-DFULL_TOP_ITERATIONS=4"), Some(50));
-    fs::remove_dir_all(folder).expect("the folder is there");
-}
-
-/// Other parameters between two steps are those of a stepper with them, which goes on with the state.
-#[test]
-fn parameters_change_between_steps() {
-    if !is_there("cc") {
-        return;
-    }
-    let declaration = parsed(FullTop::DECLARATION);
-    let numbers = declaration.described(&liestep_late::numbers(&top())).expect("numbers");
-    let mut heavier = numbers.clone();
-    declaration.set(&mut heavier, "m", &[2.5]).expect("a mass");
-    declaration.set(&mut heavier, "up", &[0.6, 0.0, 0.8]).expect("a direction");
-    let whole: Whole = Whole::of(declaration, &numbers, STEP, Method::default()).expect("a stepper");
-    let other = whole.with(&heavier, STEP).expect("a stepper");
-    let attitude = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
-    let mut state = whole.start(&attitude, start().1).expect("a start");
-    let list = |numbers: &[f64]| numbers.iter().map(|one| format!("{one:?}")).collect::<Vec<_>>().join(", ");
-    let momentum = list(&state[9..12]);
-    whole.run(&mut state, 100).expect("steps");
-    // The advected direction has another value in space.
-    let adopted = other.adopt(&state);
-    state[12..15].copy_from_slice(&adopted[12..15]);
-    other.run(&mut state, 100).expect("steps");
-    let expected = row(state[9..12].iter().copied());
-    let (text, folder) = (c(declaration).expect("a step"), folder("give"));
-    let main = format!(
-        "#include <stdio.h>\n#include <stdint.h>\n#include <string.h>
-int main(void) {{
-    const double p[] = {{{}}}, heavier[] = {{{}}}, r[] = {{{}}}, m[] = {{{momentum}}};
-    full_top_stepper stepper;
-    full_top_state state;
-    double v[3];
-    if (!full_top_make(&stepper, p, {STEP:?})) return 1;
-    full_top_velocity(&stepper, r, m, v);
-    full_top_start(&stepper, &state, r, m, v);
-    for (int i = 0; i < 200; i++) {{
-        if (i == 100 && !full_top_give(&stepper, &state, heavier)) return 2;
-        if (!full_top_step(&stepper, &state)) return 3;
-    }}
-    for (int i = 0; i < 3; i++) {{
-        uint64_t bits;
-        memcpy(&bits, state.momentum + i, 8);
-        printf(\"%016llx \", (unsigned long long)bits);
-    }}
-    puts(\"\");
-    return 0;
-}}
-",
-        list(&numbers),
-        list(&heavier),
-        list(&attitude)
-    );
-    compile(&folder, &format!("{text}{main}"), true);
-    let run = Command::new(folder.join("step")).output().expect("a program");
-    assert_eq!((run.status.code(), String::from_utf8_lossy(&run.stdout).into_owned()), (Some(0), expected));
     fs::remove_dir_all(folder).expect("the folder is there");
 }

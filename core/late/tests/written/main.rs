@@ -1,9 +1,9 @@
 //! Steps as text in other languages: compiled C makes the library's steps, and Rust is formatted as by rustfmt.
 
-mod compensated;
 mod door;
 mod doors;
 mod groups;
+mod sums;
 
 use std::fs;
 use std::process::Command;
@@ -11,13 +11,12 @@ use std::process::Command;
 use declarations::{CayleyTop, DoublePendulum, Flyer, FullTop, LogTop, SixthOrderTop};
 use liestep::groups::{LieGroup as _, SE23};
 use liestep::mechanics::{Effect, Regular};
-use liestep::methods::CompositionScheme;
-use liestep::motion::{Plan, Propagator as _};
+use liestep::motion::{AnyStepper, Propagator as _};
 use liestep::numbers::Entries;
 use liestep::with::Method;
 use liestep::{NonstandardInertia, SO3, Stepper, lagrangian};
 use liestep_derivation::whole::StepRefusal;
-use liestep_late::{Declaration, LateError, Whole, c, latex, rust};
+use liestep_late::{Declaration, LateError, Sums, Whole, c, latex, rust};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use door::{Course, Door, STEP, folder, is_there, row};
@@ -60,93 +59,50 @@ fn entries<V: Entries<f64>>(value: &V) -> Vec<f64> {
     all
 }
 
-/// Whether all steps by this text are made, and have the bits of the library's.
-fn has_the_bits_of<E>(effect: &E, attitude: E::Group, velocity: &[f64], steps: u32, written: (Door, &str)) -> bool
-where
-    E: Regular<Scalar = f64> + Clone,
-{
-    let stepper = Stepper::new(effect.clone(), STEP).expect("a stepper");
-    has_the_bits_of_a_method(effect, &stepper, (attitude, velocity), (steps, &[1.0]), written)
-}
-
 /// Whether all steps by this text, by stages of these lengths, are made, and have the bits of this stepper's.
-fn has_the_bits_of_a_method<E, P>(
+fn has_the_bits_of<E>(
     effect: &E,
-    stepper: &Stepper<E, P>,
-    (attitude, velocity): (E::Group, &[f64]),
+    stepper: &AnyStepper,
+    (attitude, velocity): (&[f64], &[f64]),
     course: Course<'_>,
     (door, text): (Door, &str),
 ) -> bool
 where
-    E: Regular<Scalar = f64> + Clone,
-    P: Plan<E>,
+    E: Effect<Scalar = f64>,
 {
-    let folder = folder(&format!("{}-{door:?}-{}", parsed(E::DECLARATION).name, course.1.len()));
-    let mut at = velocity.iter();
-    let velocity = Entries::from_entries(&mut || at.next().copied().expect("a component"));
+    let declaration = parsed(E::DECLARATION);
+    let numbers = declaration.described(&liestep_late::numbers(effect)).expect("numbers");
     let mut state = stepper.start(attitude, velocity).expect("a start");
-    let numbers = parsed(E::DECLARATION).described(&liestep_late::numbers(effect)).expect("numbers");
-    let [attitude, momentum] = [entries(&state.attitude().matrix()), entries(&state.momentum())];
-    let given = [&numbers[..], &attitude, &momentum, &entries(&stepper.velocity(&state))];
-    let found = door.rows((parsed(E::DECLARATION), text), &folder, course, given);
-    let mut expected = String::new();
-    for step in 1..=course.0 {
-        stepper.step(&mut state).expect("a step");
-        if step % 100 == 0 {
-            expected += &row(entries(&state.momentum()).into_iter().chain(entries(&state.attitude().matrix())));
-        }
-    }
+    let (momentum, velocity) = (state.momentum().to_vec(), stepper.velocity(&state));
+    let folder = folder(&format!("{}-{door:?}", declaration.name));
+    let found = door.rows((declaration, text), &folder, course, [&numbers, attitude, &momentum, &velocity]);
     fs::remove_dir_all(&folder).expect("the folder is there");
+    let mut expected = String::new();
+    for _ in 0..course.0 / 100 {
+        stepper.run(&mut state, 100).expect("steps");
+        expected += &row(state.momentum().iter().chain(state.attitude()).copied());
+    }
     found == Some(expected)
 }
 
-#[test]
-fn a_step_in_c_has_the_bits_of_the_library() {
-    if !is_there("cc") {
-        return;
-    }
-    let has_the_bits = |text: &str| {
-        let attitude = SO3::exp(Vector3::new(0.3, -0.5, 0.2));
-        has_the_bits_of(&top(), attitude, &[0.7, -1.1, 4.0], 10_000, (Door::C, text))
-    };
-    let text = c(parsed(FullTop::DECLARATION)).expect("a step in C");
-    assert!(has_the_bits(&text));
-    // A single wrong operation is detected.
-    let (before, after) = text.split_once("void full_top_again").expect("a program");
-    assert!(!has_the_bits(&format!("{before}void full_top_again{}", after.replacen(" - ", " + ", 1))));
-}
-
-#[test]
-fn a_composition_in_c_has_the_bits_of_the_library() {
-    if !is_there("cc") {
-        return;
-    }
-    let start = (SO3::exp(Vector3::new(0.3, -0.5, 0.2)), &[0.7, -1.1, 4.0][..]);
-    let text = c(parsed(FullTop::DECLARATION)).expect("a step in C");
-    let bits = |scheme: CompositionScheme, text: &str| {
-        let stepper = Stepper::composed(top(), STEP, scheme).expect("a stepper");
-        let gammas: Vec<f64> = scheme.stages().collect();
-        has_the_bits_of_a_method(&top(), &stepper, start, (2_000, &gammas), (Door::C, text))
-    };
-    assert!(bits(CompositionScheme::SUZUKI_4, &text) && bits(CompositionScheme::KAHAN_LI_8, &text));
-    let wrong = text.replace("earlier[i] * factor", "earlier[i] * -factor");
-    assert!(wrong != text && !bits(CompositionScheme::SUZUKI_4, &wrong));
-}
-
-#[test]
-fn so_has_one_of_two_bodies() {
-    if !is_there("cc") {
-        return;
-    }
-    let attitude = (SO3::exp(Vector3::new(0.3, -0.5, 0.2)), SO3::exp(Vector3::new(-0.2, 0.3, 0.1)));
-    let velocity = [0.5, -0.8, 1.2, -0.3, 0.9, 0.4];
-    let text = c(parsed(DoublePendulum::<f64>::DECLARATION)).expect("a step in C");
-    assert!(has_the_bits_of(&DoublePendulum::asymmetric(), attitude, &velocity, 1_000, (Door::C, &text)));
+/// Whether all steps by this text are made, and have the bits of the compiled stepper's.
+fn has_the_bits_of_a_step<E>(
+    effect: &E,
+    attitude: E::Group,
+    velocity: &[f64],
+    steps: u32,
+    written: (Door, &str),
+) -> bool
+where
+    E: Regular<Scalar = f64> + Clone + 'static,
+{
+    let stepper = Stepper::new(effect.clone(), STEP).expect("a stepper").into_any();
+    has_the_bits_of(effect, &stepper, (&entries(&attitude.matrix()), velocity), (steps, &[1.0]), written)
 }
 
 /// A drop that keeps its volume, a group of the text's own, and a body in space.
 #[test]
-fn so_has_one_of_a_product_with_an_own_group() {
+fn c_has_a_step_of_a_product_with_an_own_group() {
     if !is_there("cc") {
         return;
     }
@@ -181,7 +137,7 @@ fn so_has_one_of_a_product_with_an_own_group() {
     let mut state = whole.start(&attitude, &velocity).expect("a start");
     let momentum = state[25..39].to_vec();
     let mut expected = String::new();
-    let text = c(declaration).expect("a step in C");
+    let text = c(declaration, Sums::Rounded).expect("a step in C");
     let folder = folder("own");
     let found = Door::C.rows((declaration, &text), &folder, (200, &[1.0]), [&numbers, &attitude, &momentum, &velocity]);
     for _ in 0..2 {
@@ -227,7 +183,7 @@ fn so_has_one_of_rotations_of_four_dimensions() {
         whole.run(&mut state, 100).expect("steps");
         expected += &row(state[25..34].iter().chain(&state[..25]).copied());
     }
-    let texts = [(Door::C, c(declaration)), (Door::Node, liestep_late::javascript(declaration))];
+    let texts = [(Door::C, c(declaration, Sums::Rounded)), (Door::Node, liestep_late::javascript(declaration))];
     for (door, text) in texts.into_iter().filter(|(door, _)| is_there(door.program())) {
         let (text, folder) = (text.expect("a step"), folder(&format!("four-{door:?}")));
         let given = [&numbers[..], &attitude, &start[25..34], &velocity];
@@ -239,7 +195,7 @@ fn so_has_one_of_rotations_of_four_dimensions() {
 
 #[test]
 fn what_has_no_step_in_c_is_told() {
-    let refused = |text: &str| c(parsed(text)).err();
+    let refused = |text: &str| c(parsed(text), Sums::Rounded).err();
     for text in [liestep::effects::Gravity::<f64>::DECLARATION, liestep::effects::Drag::<f64>::DECLARATION] {
         assert!(matches!(refused(text), Some(LateError::Step(StepRefusal::NoKinetic))), "{text}");
     }
@@ -252,7 +208,7 @@ fn each_constant_of_a_text_is_read() {
     for declaration in
         [top, log, flyer, CayleyTop::DECLARATION, DoublePendulum::<f64>::DECLARATION, TurnedTop::DECLARATION]
     {
-        let text = c(parsed(declaration)).expect("a step in C");
+        let text = c(parsed(declaration), Sums::Rounded).expect("a step in C");
         let (_, after) = text.split_once("_CONSTANTS = ").expect("a size");
         let count = after.split(|letter: char| !letter.is_ascii_digit()).next().expect("a number");
         let unread = |at: &usize| !text.contains(&format!("in->constants[{at}]"));
@@ -271,17 +227,17 @@ fn so_have_logarithms_and_exponentials() {
     let J = liestep::mechanics::Inertia::new(J).expect("an inertia");
     let attitude = SO3::exp(Vector3::new(0.3, -0.5, 0.2));
     let log = LogTop { J, weight: 15.0, rho: Vector3::new(0.1, -0.2, 0.4), up: Vector3::z() };
-    let text = c(parsed(LogTop::DECLARATION)).expect("a step in C");
+    let text = c(parsed(LogTop::DECLARATION), Sums::Rounded).expect("a step in C");
     // Steps of .1, .8 and 1.5 rad: short, longer and closed forms.
     for faster in [1.0, 8.0, 15.0] {
         let velocity = [2.0 * faster, 4.0 * faster, 9.0 * faster];
-        assert!(has_the_bits_of(&log, attitude, &velocity, 1_000, (Door::C, &text)), "{faster}");
+        assert!(has_the_bits_of_a_step(&log, attitude, &velocity, 1_000, (Door::C, &text)), "{faster}");
     }
     // Thirty thousand operations.
     let sixth = SixthOrderTop { J, weight: 15.0, rho: Vector3::new(0.1, -0.2, 0.4), up: Vector3::z() };
-    let text = c(parsed(SixthOrderTop::DECLARATION)).expect("a step in C");
-    assert!(has_the_bits_of(&sixth, attitude, &[0.7, -1.1, 4.0], 200, (Door::C, &text)));
-    let text = c(parsed(TurnedTop::DECLARATION)).expect("a step in C");
+    let text = c(parsed(SixthOrderTop::DECLARATION), Sums::Rounded).expect("a step in C");
+    assert!(has_the_bits_of_a_step(&sixth, attitude, &[0.7, -1.1, 4.0], 200, (Door::C, &text)));
+    let text = c(parsed(TurnedTop::DECLARATION), Sums::Rounded).expect("a step in C");
     let turned = |length: f64| {
         let (v, J_d) = (Vector3::new(0.6, -0.48, 0.64) * length, *top().J_d.as_matrix());
         let J_d = NonstandardInertia::new(J_d).expect("an inertia");
@@ -289,10 +245,13 @@ fn so_have_logarithms_and_exponentials() {
     };
     // Squares of 0.25, 4 and 16.
     for length in [0.5, 2.0, 4.0] {
-        assert!(has_the_bits_of(&turned(length), attitude, &[0.7, -1.1, 4.0], 1_000, (Door::C, &text)), "{length}");
+        assert!(
+            has_the_bits_of_a_step(&turned(length), attitude, &[0.7, -1.1, 4.0], 1_000, (Door::C, &text)),
+            "{length}"
+        );
     }
     let wrong = text.replace("(reciprocal - lower[i % 2]) / q", "(reciprocal + lower[i % 2]) / q");
-    assert!(!has_the_bits_of(&turned(4.0), attitude, &[0.7, -1.1, 4.0], 1_000, (Door::C, &wrong)));
+    assert!(!has_the_bits_of_a_step(&turned(4.0), attitude, &[0.7, -1.1, 4.0], 1_000, (Door::C, &wrong)));
 }
 
 /// Rust text is formatted, and complete.

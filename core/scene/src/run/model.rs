@@ -3,7 +3,7 @@
 use liestep::motion::Propagator as _;
 use liestep::with::{Method, Scheme};
 use liestep_derivation::{ParameterKind, Role};
-use liestep_late::{Declaration, Whole, compensated, numbered};
+use liestep_late::{Declaration, Sums, Whole, numbered};
 
 use crate::file::effects::EFFECTS;
 use crate::file::scene_file::SceneFile;
@@ -79,12 +79,11 @@ impl ModelParameter {
 
 impl Model {
     /// The texts of the step's numbers in C; none where its bounds need the solve with care.
-    pub(crate) fn numbered(&self, is_compensated: bool) -> Option<[String; 2]> {
+    pub(crate) fn numbered(&self, sums: Sums) -> Option<[String; 2]> {
         let mut velocity = self.velocity.clone();
         let state = self.whole.start_with_momentum(&self.attitude, &self.momentum).ok()?;
         self.whole.velocity(&state, &mut velocity);
-        let numbered = if is_compensated { compensated::numbered } else { numbered };
-        numbered(&self.whole, [&self.attitude, &self.momentum, &velocity]).ok()
+        numbered(&self.whole, [&self.attitude, &self.momentum, &velocity], sums).ok()
     }
 
     /// The model of a scene, or the reason why it has none.

@@ -6,7 +6,7 @@ use liestep::effects::joints::{
 };
 use liestep::effects::{CayleyBody, FourthOrderBody, GeodesicBody, PrincipalBody, RigidBody, SixthOrderBody};
 use liestep::mechanics::Effect;
-use liestep_late::{Declaration, LateError, compensated};
+use liestep_late::{Declaration, LateError, Sums};
 
 use crate::file::effects::{EFFECTS, EffectEntry};
 use crate::file::joint::{Joint, Number};
@@ -70,26 +70,15 @@ pub enum Form {
     JavaScript,
 }
 
-/// The sums of a step in C: rounded, or compensated, whose rounding errors are added to the next changes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[allow(missing_docs)]
-pub enum Sums {
-    Rounded,
-    Compensated,
-}
-
 impl Form {
     fn of(self, declaration: &Declaration) -> Result<String, LateError> {
         match self {
             Self::Latex => Ok(liestep_late::latex(declaration)),
             Self::Rust => Ok(liestep_late::rust(declaration)),
-            Self::C(Sums::Rounded) => liestep_late::c(declaration),
-            Self::C(Sums::Compensated) => compensated::c(declaration),
+            Self::C(sums) => liestep_late::c(declaration, sums),
             Self::Certificate => liestep_late::certificate(declaration),
-            Self::Header(Sums::Rounded) => liestep_late::header(declaration),
-            Self::Header(Sums::Compensated) => compensated::header(declaration),
-            Self::Gpu(Sums::Rounded) => liestep_late::gpu(declaration),
-            Self::Gpu(Sums::Compensated) => compensated::gpu(declaration),
+            Self::Header(sums) => liestep_late::header(declaration, sums),
+            Self::Gpu(sums) => liestep_late::gpu(declaration, sums),
             Self::JavaScript => liestep_late::javascript(declaration),
         }
     }
@@ -141,9 +130,7 @@ impl SceneFile {
         let sum = Declaration::sum(&listed.chain(own).collect::<Result<Vec<_>, _>>()?)?;
         let text = form.of(sum)?;
         let numbers = match form {
-            Form::C(sums) | Form::Header(sums) => {
-                Model::of(self).ok().and_then(|model| model.numbered(sums == Sums::Compensated))
-            }
+            Form::C(sums) | Form::Header(sums) => Model::of(self).ok().and_then(|model| model.numbered(sums)),
             _ => None,
         };
         Ok(match (form, numbers) {

@@ -7,7 +7,7 @@ mod archive;
 mod description;
 mod variables;
 
-use liestep_late::{c, prefix};
+use liestep_late::{Sums, c, prefix};
 
 use crate::file::mistake::Mistake;
 use crate::file::scene::Scene;
@@ -55,7 +55,7 @@ impl Scene {
         let wrong = |why: String| file.mistake(Stop::Other(format!("the scene is no unit: {why}")));
         let model = Model::of(file).map_err(wrong)?;
         let name = identifier(name);
-        let step = c(model.declaration).map_err(|error| wrong(error.to_string()))?;
+        let step = c(model.declaration, Sums::Rounded).map_err(|error| wrong(error.to_string()))?;
         let token = format!("liestep-{name}-{:016x}", digest(&step));
         let variables = variables::variables(&model, file.group.unit_of_energy());
         let described = description::description(&model, (&name, self.title(), &token), &variables, fmi);
