@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 use liestep::with::Scheme;
 use liestep_ensemble::share_of;
-use liestep_late::Declaration;
+use liestep_late::{Declaration, Sums};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -126,9 +126,8 @@ impl Scene {
     }
 
     /// A step in C99.
-    #[getter]
-    fn c(&self) -> PyResult<String> {
-        Ok(self.0.c()?)
+    fn c(&self, compensated: bool) -> PyResult<String> {
+        Ok(self.0.c(if compensated { Sums::Compensated } else { Sums::Rounded })?)
     }
 
     /// The step as data, with the claims that are to be checked.

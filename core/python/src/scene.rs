@@ -107,8 +107,8 @@ impl Scene {
     }
 
     /// A step in C99.
-    pub(crate) fn c(&self) -> Result<String, Failure> {
-        Ok(liestep_late::c(self.declaration, Sums::Rounded)?)
+    pub(crate) fn c(&self, sums: Sums) -> Result<String, Failure> {
+        Ok(liestep_late::c(self.declaration, sums)?)
     }
 
     /// The step as data, with the claims that are to be checked.

@@ -116,7 +116,7 @@ CALLS: list[tuple[Callable[..., Any], dict[str, Any]]] = [
     (SIGNAL.at, {"times": [0, 1]}), (SIGNAL.mapped, {"function": lambda x: 2 * x}), (SIGNAL.key, {}), (SIGNAL.table, {}),
     (BODY.control(step=0.1, steps=3, goal=[1, 0, 0, 0]).solve, {"progress": None, "tolerance": 1e-6, "iterations": 3}),
     (BODY.ensemble(3, step=0.1, **TURN).run, {"folder": "kept", "until": 0.2, "every": None, "threads": 1, "share": "0/1", "chunk": None, "progress": False}),
-    (BODY.__add__, {"other": PUSHED}), (SCENE.run, {}), (SCENE.start, {}), (SCENE.run().group, {"start": "velocity_"}), (SCENE.run().html, {}), (RUN.html, {}),
+    (BODY.__add__, {"other": PUSHED}), (BODY.c, {"compensated": True}), (SCENE.run, {}), (SCENE.start, {}), (SCENE.run().group, {"start": "velocity_"}), (SCENE.run().html, {}), (RUN.html, {}),
 ]
 
 #: Methods that the list has by another way, or that take what Python's own do.

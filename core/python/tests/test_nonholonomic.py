@@ -155,3 +155,5 @@ def test_mistakes_have_their_places() -> None:
         three.stepper(0.1).run(velocity=[0, 0, 0], until=1)
     with pytest.raises(ls.SetupError, match="constraints on velocities"):
         suslov().stepper(0.1, collocation=4).run(velocity=START, until=1)
+    with pytest.raises(ls.DeclarationError, match="sums aren't compensated beside constraints on velocities"):
+        suslov().c(compensated=True)

@@ -104,19 +104,21 @@ int main(void) {{
 @pytest.fixture
 def in_c(tmp_path):
     """A comparison of a term's steps with those of its text in C, to the last bit."""
-    def compared(term, velocity, h, steps=1000, **start):
+    def compared(term, velocity, h, steps=1000, compensated=False, **start):
         if shutil.which("cc") is None:
             print("not in C: there is no `cc`")
             return
-        run = term.stepper(h).run(velocity=velocity, until=h * steps, every=steps, **start)
+        run = term.stepper(h, compensated=compensated).run(velocity=velocity, until=h * steps, every=steps, **start)
 
         def written(numbers):
             return ", ".join(f"{number:.17g}" for number in np.ravel(numbers))
 
         first, last = (np.ravel(matrices(run)[at]) for at in (0, -1))
-        text = term.c + MAIN.format(
+        c = term.c(compensated=compensated)
+        assert ("Sums are compensated" in c) == compensated
+        text = c + MAIN.format(
             parameters=written(term.numbers), attitude=written(first), momentum=written(run.momentum[0]),
-            velocity=written(run.velocity[0]), h=repr(h), steps=steps, of=re.search(r"(\w+)_make\(", term.c)[1],
+            velocity=written(run.velocity[0]), h=repr(h), steps=steps, of=re.search(r"(\w+)_make\(", c)[1],
         )
         (tmp_path / "step.c").write_text(text)
         flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O1", "-ffp-contract=off"]
@@ -225,6 +227,7 @@ def test_a_rod_with_a_curvature(in_c):
     term = ls.lagrangian("SE3", velocity="xi", discretise="trapezoid(Cayley)", l="(xi - u).dot(K * (xi - u)) / 2", K=K, u=own)
     orders(term, velocity, free_motion(MOVES, K, velocity, -K @ own))
     in_c(term, velocity, 0.01)
+    in_c(term, velocity, 0.01, compensated=True)
 
 
 def test_a_cubic():
@@ -359,6 +362,7 @@ def test_a_body_on_eight_springs(in_c):
     run = body.run(velocity=[0.1, 0.2, 0.3], until=2)
     assert abs(run.velocity[-1] - [-1.74747, -5.98525, -2.85234]).max() < 1e-5 and run.error < 1e-5
     in_c(body, [0.1, 0.2, 0.3], 0.01)
+    in_c(body, [0.1, 0.2, 0.3], 0.01, compensated=True)
 
 
 def test_a_double_pendulum_by_its_angles(in_c):

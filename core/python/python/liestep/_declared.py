@@ -253,24 +253,29 @@ class Sum:
         """The equations as LaTeX, an ``align*`` for each summand."""
         return "\n".join(summand.derived().latex for summand in self.summands)
 
-    @property
-    def c(self) -> str:
+    def c(self, *, compensated: bool = False) -> str:
         """A step of the sum as C99 without dependencies: the bits of `Term.stepper`'s own step, where contraction is off.
 
         Its head says the order of the parameters, and what the functions do; all names begin with that of the sum.
 
+        Parameters
+        ----------
+        compensated : bool
+            Whether rounding errors of attitude, momentum and what is advected are added to their next changes, as by
+            ``stepper(step, compensated=True)`` and ``liestep derive --c --compensated``.
+
         Raises
         ------
         DeclarationError
-            The sum has no kinetic energy.
+            The sum has no kinetic energy, or is to have compensated sums beside a pace or constraints on velocities.
 
         Examples
         --------
         >>> import liestep as ls
-        >>> "int rigid_body_step(const rigid_body_stepper *stepper, rigid_body_state *state)" in ls.body([1, 2, 2.5]).c
+        >>> "int rigid_body_step(const rigid_body_stepper *stepper, rigid_body_state *state)" in ls.body([1, 2, 2.5]).c()
         True
         """
-        return self._scene().c
+        return self._scene().c(compensated)
 
     @property
     def certificate(self) -> str:
