@@ -8,7 +8,7 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use liestep::SetupError;
 use liestep::mechanics::Parts;
 use liestep_derivation::{MOST_WORK, ParameterKind, Program, Refusal, StagedDeclaration, Stages, staged};
-use proc_macro2::{LexError, TokenStream};
+use proc_macro2::{LexError, Span, TokenStream};
 
 use crate::code::Backend;
 use crate::error::{LateError, Mistake};
@@ -72,6 +72,27 @@ pub fn kept() -> usize {
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).len()
 }
 
+/// A mistake at a place of a text.
+fn placed(message: String, span: Span) -> Mistake {
+    let place = span.start();
+    Mistake { message, line: place.line, column: place.column + 1 }
+}
+
+/// The result of what is made of a text's tokens.
+fn lexed<T>(text: &str, made: impl FnOnce(&TokenStream) -> Result<T, LateError>) -> Result<T, LateError> {
+    if text.len() > LONGEST {
+        return Err(LateError::TooLong(LONGEST));
+    }
+    let tokens = text.parse().map_err(|error: LexError| {
+        let message = "a bracket isn't closed or opened, or a sign has no meaning here".to_owned();
+        LateError::Mistakes(vec![placed(message, error.span())])
+    });
+    let found = tokens.and_then(|tokens| made(&tokens));
+    // The texts of the tokens' places would be stored, too.
+    proc_macro2::extra::invalidate_current_thread_spans();
+    found
+}
+
 impl Declaration {
     /// Derives a struct with `#[lagrangian(…)]`, `#[force(…)]`, `#[nonholonomic(…)]` or `#[hamiltonian(…)]`, and checks the
     /// derivation.
@@ -80,10 +101,16 @@ impl Declaration {
     ///
     /// The mistakes of the text, each with its line and column, or the reason why it can't be stored.
     pub fn parse(text: &str) -> Result<&'static Self, LateError> {
-        if text.len() > LONGEST {
-            return Err(LateError::TooLong(LONGEST));
-        }
         Self::kept(text, || vec![text.to_owned()], || Self::derived(text))
+    }
+
+    /// Reads a part of a declaration as tokens: a bracket that it leaves open would be closed by one behind it.
+    ///
+    /// # Errors
+    ///
+    /// The bracket or the sign that has no meaning, with its line and column in the part.
+    pub fn lex(part: &str) -> Result<(), LateError> {
+        lexed(part, |_| Ok(()))
     }
 
     /// An attitude displaced by small coordinates of the algebra, `g (I + ξ̂)`, by which the growth of rounding errors is
@@ -147,23 +174,13 @@ impl Declaration {
     }
 
     fn derived(text: &str) -> Result<StagedDeclaration, LateError> {
-        let tokens: TokenStream = text.parse().map_err(|error: LexError| {
-            let place = error.span().start();
-            let message = "a bracket isn't closed or opened, or a sign has no meaning here".to_owned();
-            LateError::Mistakes(vec![Mistake { message, line: place.line, column: place.column + 1 }])
-        })?;
-        let found = staged(&tokens, MOST_WORK).map_err(|refusal| {
-            let Refusal::Mistakes(mistakes) = refusal else { return LateError::TooMuchWork };
-            let placed = mistakes.into_iter().map(|mistake| {
-                let place = mistake.span.start();
-                Mistake { message: mistake.message, line: place.line, column: place.column + 1 }
-            });
-            LateError::Mistakes(placed.collect())
-        });
-        drop(tokens);
-        // The texts of the tokens' places would be stored, too.
-        proc_macro2::extra::invalidate_current_thread_spans();
-        found.map(|(staged, _)| staged)
+        let refused = |refusal| match refusal {
+            Refusal::Mistakes(all) => {
+                LateError::Mistakes(all.into_iter().map(|one| placed(one.message, one.span)).collect())
+            }
+            Refusal::TooMuchWork => LateError::TooMuchWork,
+        };
+        lexed(text, |tokens| staged(tokens, MOST_WORK).map_err(refused)).map(|(staged, _)| staged)
     }
 
     fn of(staged: StagedDeclaration, texts: Vec<String>) -> Self {

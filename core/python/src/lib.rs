@@ -298,6 +298,12 @@ fn fitted<'py>(py: Python<'py>, terms: Vec<Term<'py>>, task: estimate::Task) -> 
     estimate::estimate(py, &terms, &numbers, &task)
 }
 
+/// Reads a part of a text as tokens.
+#[pyfunction]
+fn lex(part: &str) -> PyResult<()> {
+    Ok(Declaration::lex(part).map_err(Failure::from)?)
+}
+
 /// The names of all schemes, by the kind of the method.
 #[pyfunction]
 fn schemes() -> Vec<(&'static str, Vec<&'static str>)> {
@@ -319,7 +325,9 @@ fn share(text: &str) -> PyResult<(u64, u64)> {
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::{Along, Derivation, Orbit, Scene, Signal, State, Table, View, fitted, order, plan, schemes, share};
+    use super::{
+        Along, Derivation, Orbit, Scene, Signal, State, Table, View, fitted, lex, order, plan, schemes, share,
+    };
     #[pymodule_export]
     use crate::file::{File, FileRun, library, ratio};
     #[pymodule_export]

@@ -76,5 +76,5 @@ def test_a_bracket_without_another_has_its_place(l, place):  # noqa: E741
 
 
 def test_a_vector_in_the_place_of_a_matrix_is_said_to_be_a_diagonal():
-    with pytest.raises(ls.DeclarationError, match=r"pass `A=np.diag\(\[1, 2, 5\]\)`"):
+    with pytest.raises(ls.DeclarationError, match=r"if `A` is the diagonal of a matrix, pass `A=np.diag\(A\)`$"):
         ls.lagrangian("SO3", l="1/2 * Omega.dot(A * Omega)", discretise="trapezoid(Cayley)", A=[1, 2, 5])

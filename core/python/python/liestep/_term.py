@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from . import _native
 from ._arrays import floats, shown, text
 from ._control import Control
 from ._declared import Group, Sum, Summand, Value, _value
@@ -194,6 +194,7 @@ def _declared(
     if head.startswith("pace = "):
         carried = "given(E_0 = E_0_of_the_start), " + carried
     fields = ", ".join(f"{name}: {value.kind}" for name, value in numbers.items())
+    _native.lex(own_text)
     whole = f"#[{role}({on}, {carried}{head} =\n{own_text}\n)]\nstruct Declared {{ {fields} }}"
     try:
         return Term.of(*Summand.of(whole, numbers, role.capitalize() if role == "lagrangian" else role))
@@ -204,36 +205,7 @@ def _declared(
             (message, line - 1, column) if 1 < line <= 1 + lines else (message, 0, 0)
             for message, line, column in error.mistakes
         ]
-        if len(own) == 1 and own[0][1] == 0 and "bracket" in own[0][0] and (place := _unmatched(own_text)):
-            own = [(own[0][0], *place)]
-        own = [(_with_diagonal(message, own_text, numbers), line, column) for message, line, column in own]
         raise (DeclarationError.of(own) if own else error) from None
-
-
-def _unmatched(own_text: str) -> tuple[int, int] | None:
-    """Line and column of the bracket that has no other, from one."""
-    opened: list[tuple[str, int]] = []
-    wrong = None
-    for place, letter in enumerate(own_text):
-        if letter in "([{":
-            opened.append((letter, place))
-        elif letter in ")]}":
-            if not opened or opened.pop()[0] + letter not in ("()", "[]", "{}"):
-                wrong = place
-                break
-    if wrong is None and not opened:
-        return None
-    before = own_text[: opened[-1][1] if wrong is None else wrong]
-    return before.count("\n") + 1, len(before) - before.rfind("\n")
-
-
-def _with_diagonal(message: str, own_text: str, numbers: Mapping[str, Value]) -> str:
-    """A message about a vector, with what to write where it was to be the diagonal of a matrix."""
-    for name, value in numbers.items():
-        if value.kind.startswith("SVector") and "can't be multiplied by a vector" in message and re.search(rf"\b{re.escape(name)} *\* *\w", own_text):
-            given = ", ".join(f"{one:g}" for one in value.numbers[:6]) + (", …" if len(value.numbers) > 6 else "")
-            return f"{message}; if `{name}` is the diagonal of a matrix, pass `{name}=np.diag([{given}])`"
-    return message
 
 
 def _generators(generators: Any) -> str:

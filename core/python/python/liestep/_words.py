@@ -11,6 +11,7 @@ WORDS = [
     ("make it a field of the struct", "pass it by its name"),
     ("make this matrix a field", "pass this matrix by a name"),
     ("it is no real number: make it a field", "it is no real number: pass it by its name"),
+    ("if `{}` is the diagonal of a matrix, give the matrix", "if `{0}` is the diagonal of a matrix, pass `{0}=np.diag({0})`"),
     ("remove the field, or use it", "leave it out, or use it"),
     ("a field of the struct", "a parameter"),
     ("the struct has no field", "there is no parameter"),

@@ -218,10 +218,12 @@ impl<'t, 'a> Text<'t, 'a> {
             }
         };
         self.line(&format!("{key} ="), at.clone());
+        // Its first line is the attribute's.
+        let before = "\n".repeat(1 + self.lines.len());
         let lines =
             expression.split('\n').map(|line| Line { text: line.to_owned(), at: at.clone(), is_verbatim: true });
         self.lines.extend(lines);
-        Ok(())
+        Declaration::lex(&(before + &expression)).map_err(|error| self.mistake(error))
     }
 
     fn read_parameters(&mut self) -> Result<(), SpanMessage> {

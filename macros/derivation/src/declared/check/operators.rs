@@ -52,7 +52,7 @@ impl Checker<'_> {
                     (Shape::Matrix(rows, inner), Shape::Matrix(same, columns)) if inner == same => {
                         Shape::Matrix(rows, columns)
                     }
-                    (a, b) => return self.no_product(binary.op, a, b),
+                    _ => return self.no_product(binary.op, &left, &right),
                 };
                 Some(Tree::new(span, shape, Kind::Multiply(left, right)))
             }
@@ -99,11 +99,18 @@ impl Checker<'_> {
     }
 
     /// Reports a product of two shapes that have none.
-    fn no_product(&mut self, operator: BinOp, a: Shape, b: Shape) -> Option<Rc<Tree>> {
+    fn no_product(&mut self, operator: BinOp, left: &Tree, right: &Tree) -> Option<Rc<Tree>> {
         let group = &self.declaration.group;
-        let hint = match (a, b) {
+        let hint = match (left.shape, right.shape) {
             (Shape::Matrix(m, 1), Shape::Matrix(n, 1)) if m == n => {
-                "write `a.dot(&b)`, or `a * b.transpose()`".to_owned()
+                let diagonal = match left.kind {
+                    Kind::Name(Name::Field(index)) => {
+                        let name = &self.declaration.fields[index].name;
+                        format!("; if `{name}` is the diagonal of a matrix, give the matrix")
+                    }
+                    _ => String::new(),
+                };
+                format!("write `a.dot(&b)`, or `a * b.transpose()`{diagonal}")
             }
             (Shape::Matrix(_, columns), Shape::Matrix(rows @ 1..=3, 1))
                 if group.is_affine() && columns == group.size && columns == rows + 1 =>
@@ -112,7 +119,8 @@ impl Checker<'_> {
             }
             _ => "the columns of the left must be as many as the rows of the right".to_owned(),
         };
-        self.errors.push(operator.span(), format!("{} can't be multiplied by {}: {hint}", a.describe(), b.describe()));
+        let (a, b) = (left.shape.describe(), right.shape.describe());
+        self.errors.push(operator.span(), format!("{a} can't be multiplied by {b}: {hint}"));
         None
     }
 
