@@ -251,7 +251,7 @@ fn wheels_with_signals_have_the_order_of_a_composition() {
     assert!((limited - spun - cut).abs() < 1e-13, "{limited} {cut}");
 }
 
-/// Where a signal ends with the run there is no step ahead of the last row: forces of joints are those of the signal's end.
+/// Forces of joints in the last row, which has no step ahead where a signal ends with the run, are those of the signal's end.
 #[test]
 fn forces_of_joints_end_with_a_signal() {
     let folder = folder("forces_of_joints_end_with_a_signal");

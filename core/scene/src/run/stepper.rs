@@ -157,7 +157,7 @@ impl SceneFile {
             let [before, after] = norms.map(short);
             return format!(", norm of the momentum {before} → {after}{}", self.last_state(ends[1]));
         }
-        // By its components, as that along the vertical may be the one that is conserved; rounding errors of zero are zero.
+        // Components show a momentum along the vertical that is conserved alone; rounding errors of zero are zero.
         let largest = norms[0].max(norms[1]);
         let number = |part: &f64| short(if part.abs() <= 1e-13 * largest { 0.0 } else { *part });
         let [before, after] = momenta.map(|parts| parts.iter().map(number).collect::<Vec<_>>().join(", "));
